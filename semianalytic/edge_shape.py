@@ -39,6 +39,7 @@ BLUNT = 0.7  # patches from the edge, nearer than which the column of the edge, 
 SLACK = 0.15  # patches by which the edge may pass the centre of a loaded or of an unloaded patch
 FAR = -0.6  # t beyond which the contour is an ellipse
 WIDEST = 0.3  # largest change of an axis, as a coefficient c
+HELD = 2**24  # numbers of the columns held at a time: 128 megabytes
 ANGLES = 256  # at which a contour that is no ellipse is sampled
 
 
@@ -236,21 +237,10 @@ def fitted(
     each one represents.  patch [m] : the side.  fixed_edge : change the coefficients b alone.
     """
     k, across = len(shape.harmonics), min(shape.axes)
-    columns = shape.columns(x, y, BLUNT * patch / across)
-    if fixed_edge:
-        columns = columns[:-k]
-    left = pressure - replace(shape, outside=False).pressure(x, y)
-    if shape.outside:
-        window = np.clip((FADED[1] - shape.polynomials(x, y)[0]) / (FADED[1] - FADED[0]), 0, 1)
-        columns, left = columns * window, left * window
-    deflected = np.array([deflection(column) for column in columns]).reshape(len(columns), -1)
-    if weight is not None:
-        deflected *= weight.ravel()
-    normal = deflected @ columns.reshape(len(columns), -1).T
+    normal, right = _normal_equations(shape, pressure, x, y, deflection, weight, patch, fixed_edge)
     size = np.sqrt(np.diag(normal))
-    scaled = np.linalg.lstsq(
-        (normal + normal.T) / 2 / np.outer(size, size), deflected @ left.ravel() / size, rcond=1e-14
-    )[0]
+    normal = (normal + normal.T) / 2 / np.outer(size, size)
+    scaled = np.linalg.lstsq(normal, right / size, rcond=1e-14)[0]
     change = scaled / size
     if fixed_edge:
         return shape.changed(np.concatenate([change, np.zeros(k)])), Step(change, scaled)
@@ -267,9 +257,53 @@ def fitted(
     return shape, Step(change, scaled, share)
 
 
+def _normal_equations(
+    shape: Shape,
+    pressure: Array,
+    x: Array,
+    y: Array,
+    deflection: Callable[[Array], Array],
+    weight: Array | None,
+    patch: float,
+    fixed_edge: bool,
+) -> tuple[Array, Array]:
+    """phi' K phi and phi' K e, of at most ``HELD`` numbers at a time; arguments as in `fitted`."""
+    (nx, ny), k = pressure.shape, len(shape.harmonics)
+    count = k * (len(shape.coefficients) + (0 if fixed_edge else 1))
+    step, batch = max(1, HELD // (count * ny)), max(1, HELD // (nx * ny))
+    blocks = [slice(i, i + step) for i in range(0, nx, step)]
+
+    def at(rows: slice) -> tuple[Array, Array]:
+        """The columns, (count, rows, ny), and the pressure left."""
+        columns = shape.columns(x[rows], y, BLUNT * patch / min(shape.axes))[:count]
+        left = pressure[rows] - replace(shape, outside=False).pressure(x[rows], y)
+        if shape.outside:
+            window = np.clip((FADED[1] - shape.polynomials(x[rows], y)[0]) / (FADED[1] - FADED[0]), 0, 1)
+            columns, left = columns * window, left * window
+        return columns, left
+
+    whole = at(blocks[0]) if len(blocks) == 1 else None
+    normal, right = np.zeros((count, count)), np.zeros(count)
+    for begin in range(0, count, batch):
+        some = slice(begin, min(begin + batch, count))
+        deflected = np.empty((some.stop - begin, nx, ny))
+        for rows in blocks:
+            deflected[:, rows] = (whole or at(rows))[0][some]
+        for field in deflected:
+            field[...] = deflection(field)
+            if weight is not None:
+                field *= weight
+        for rows in blocks:
+            columns, left = whole or at(rows)
+            of_rows = deflected[:, rows].reshape(len(deflected), -1)
+            normal[some] += of_rows @ columns.reshape(count, -1).T
+            right[some] += of_rows @ left.ravel()
+    return normal, right
+
+
 def _between_centres(shape: Shape, loaded: NDArray[np.bool_], x: Array, y: Array, patch: float) -> Shape:
     """The shape with its edge outside the centres of loaded patches and inside those of unloaded ones."""
-    t = shape.polynomials(x, y)[0]
+    t = np.concatenate([shape.polynomials(row, y)[0] for row in np.array_split(x, max(1, x.size // 64))])
     beside = maximum_filter(loaded, 3) & ~loaded
     slack = 2 * SLACK * patch / min(shape.axes)
     low, high = float(t[loaded].min()), float(t[beside].max(initial=-np.inf))

@@ -32,6 +32,7 @@ Indices = NDArray[np.intp]
 FULL, TAPER = 3, 8
 SHARES = np.concatenate([np.ones(FULL + 1), 1 - np.arange(1, TAPER + 1) / (TAPER + 1)])
 PARTS = 11  # of a patch a side, odd
+AT_ONCE = 4000  # patches at the edge: with their parts 100 megabytes
 NEARLY = 4  # depth from which a quadratic of f^2 gives the means of all parts, to 1e-6 of them
 NEAR = 4  # within which the deflection is that of the parts, beyond it that of their moments
 
@@ -73,10 +74,38 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     i, j = np.nonzero(beside & (depth < SHARES.size))
     share = SHARES[depth[i, j]]
     x, y = (grid.x[part] for part in window.slices)
-    offset = np.array([-0.5, 0, 0.5]) * grid.d
-    square = shape.square(x[i][:, None, None] + offset[:, None], y[j][:, None, None] + offset)
+    quadratic = np.concatenate(
+        [_quadratic(shape, x[i[k]], y[j[k]], grid.d) for k in _some(np.arange(i.size))]
+    )
+    c = quadratic[:, 0]
+    slope = np.hypot(quadratic[:, 1], quadratic[:, 2])
+    held = p[i, j]
+    at_edge = (depth[i, j] >= 1) & (depth[i, j] <= 2)
+    missed = np.abs(held**2 - c)[at_edge] / slope[at_edge].max(initial=np.finfo(float).tiny)
+    centre = np.sqrt(np.maximum(c, 0))
+    parts = np.empty((i.size, PARTS**2))
+    for k in _some(np.arange(i.size)):
+        parts[k] = _smooth_parts(quadratic[k])
+    # the edge cuts these along x, or along y
+    along_x = np.abs(quadratic[:, 1]) >= np.abs(quadratic[:, 2])
+    for group, swap in ((along_x, False), (~along_x, True)):
+        at_x, at_y = (ACROSS, FACES) if swap else (FACES, ACROSS)
+        for k in _some(np.flatnonzero(group & (depth[i, j] < NEARLY))):
+            faces = shape.square(
+                x[i[k]][:, None, None] + at_x[:, None] * grid.d, y[j[k]][:, None, None] + at_y * grid.d
+            )
+            parts[k] = _cut_parts(
+                faces.swapaxes(1, 2) if swap else faces, quadratic[k, 5 if swap else 3], swap
+            )
+    return EdgePatches(i, j, centre, parts, share, float(missed.max(initial=0.0)))
+
+
+def _quadratic(shape: Shape, x: Array, y: Array, d: float) -> Array:
+    """f^2 = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2 around patch centres, in patches, (k, 6)."""
+    offset = np.array([-0.5, 0, 0.5]) * d
+    square = shape.square(x[:, None, None] + offset[:, None], y[:, None, None] + offset)
     c = square[:, 1, 1]
-    quadratic = np.stack(
+    return np.stack(
         [
             c,
             square[:, 2, 1] - square[:, 0, 1],
@@ -87,28 +116,17 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
         ],
         axis=-1,
     )
-    slope = np.hypot(quadratic[:, 1], quadratic[:, 2])
-    held = p[i, j]
-    at_edge = (depth[i, j] >= 1) & (depth[i, j] <= 2)
-    missed = np.abs(held**2 - c)[at_edge] / slope[at_edge].max(initial=np.finfo(float).tiny)
-    centre = np.sqrt(np.maximum(c, 0))
-    parts = _smooth_parts(quadratic)
-    # the edge cuts these along x, or along y
-    along_x = np.abs(quadratic[:, 1]) >= np.abs(quadratic[:, 2])
-    for group, swap in ((along_x, False), (~along_x, True)):
-        k = np.flatnonzero(group & (depth[i, j] < NEARLY))
-        at_x, at_y = (ACROSS, FACES) if swap else (FACES, ACROSS)
-        faces = shape.square(
-            x[i[k]][:, None, None] + at_x[:, None] * grid.d, y[j[k]][:, None, None] + at_y * grid.d
-        )
-        parts[k] = _cut_parts(faces.swapaxes(1, 2) if swap else faces, quadratic[k, 5 if swap else 3], swap)
-    return EdgePatches(i, j, centre, parts, share, float(missed.max(initial=0.0)))
+
+
+def _some(k: Indices) -> list[Indices]:
+    """Patches in groups of at most ``AT_ONCE``."""
+    return np.array_split(k, -(-k.size // AT_ONCE)) if k.size else []
 
 
 def _smooth_parts(quadratic: Array) -> Array:
     """Mean of f over PARTS x PARTS parts of every patch inside, (k, PARTS^2).
 
-    quadratic : f^2 = c0 + c1 x + c2 y + c3 x^2 + c4 x y + c5 y^2, in patches from the centre, (k, 6).
+    quadratic : f^2 of `_quadratic`, (k, 6).
     The mean follows from f^2 and its derivatives at the centre of a part.
     """
     square = quadratic @ _terms(MIDDLES, MIDDLES)
@@ -159,19 +177,20 @@ def beyond_centres(
     moments[:-2, 1:-1] -= mx / 2
     moments[1:-1, 2:] += my / 2
     moments[1:-1, :-2] -= my / 2
-    sources = edge.parts * (edge.share * own[edge.i, edge.j])[:, None]
-    for (di, dj), share in _stencil().items():
-        moments[edge.i + 1 + di, edge.j + 1 + dj] += sources @ share
+    u = np.zeros((p.shape[0] + 2 * NEAR, p.shape[1] + 2 * NEAR))
+    for k in _some(np.arange(edge.i.size)):
+        i, j = edge.i[k], edge.j[k]
+        sources = edge.parts[k] * (edge.share[k] * own[i, j])[:, None]
+        for (di, dj), share in _stencil().items():
+            moments[i + 1 + di, j + 1 + dj] += sources @ share
+        for (di, dj), at_offset in zip(np.ndindex(2 * NEAR + 1, 2 * NEAR + 1), near @ sources.T, strict=True):
+            u[i + di, j + dj] += at_offset
     moments = _folded(moments, 1, grid)
     moments[edge.i, edge.j] -= edge.share * edge.centre
     lost = edge.share * (edge.parts.mean(axis=1) - edge.centre)
     bend /= own
     missing = float((bend if weight is None else weight * bend).sum())
     missing += float((lost if weight is None else weight[edge.i, edge.j] * lost).sum())
-    u = np.zeros((p.shape[0] + 2 * NEAR, p.shape[1] + 2 * NEAR))
-    of_offsets = near @ sources.T
-    for (di, dj), at_offset in zip(np.ndindex(2 * NEAR + 1, 2 * NEAR + 1), of_offsets, strict=True):
-        u[edge.i + di, edge.j + dj] += at_offset
     return deflection(moments) + _folded(u, NEAR, grid), missing * grid.d**2
 
 

@@ -42,7 +42,7 @@ ROUGH, ROOMY = (
     49,
     1.5,
 )  # patches a side of the grid that finds the contact radius, and its half-width over that
-FINER, LARGEST_GRID = 1.4, 725  # patches a side of the next grid over the last; of the last for ``accuracy``
+FINER, LARGEST_GRID = 1.4, 1025  # patches a side of the next grid over the last; of the last for ``accuracy``
 
 
 def solve(
@@ -78,8 +78,8 @@ def solve(
     edge_correction : for the square root of the pressure at the edge (``edge_correction``). False : constant
     patches alone, whose edge is a staircase.
     accuracy : relative uncertainty of contact radius, approach and peak pressure, for which the patches are
-    refined beyond ``patches`` to at most 725 a side; the solution states what it reached. None : no
-    refinement.
+    refined beyond ``patches`` to at most 1025 a side, and until the pressure at the same x/a changes by no
+    more than six times that of its peak; the solution states what it reached. None : no refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
 
     Raises ValueError for input without meaning and for a contact as wide as the sphere, NotConverged when the
@@ -107,7 +107,7 @@ def solve(
     if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
         raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
     estimate = uncertainty.of_contact(levels, pressed, body, numerics) if estimate_uncertainty else None
-    while estimate and accuracy and edge_correction and estimate.relative_to(levels[-1].scalars) > accuracy:
+    while estimate and accuracy and edge_correction and not uncertainty.is_met(accuracy, estimate, levels):
         n = odd(FINER * levels[-1].grid.n)
         if n > LARGEST_GRID:
             break

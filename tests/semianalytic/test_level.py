@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from semianalytic import arrays, convolution, halved_convolution, level
+from semianalytic import arrays, convolution, edge_shape, halved_convolution, level, smooth_edge
 from semianalytic.contact import Contact
 from semianalytic.grid import Grid, Window
 from semianalytic.inputs import Body, Numerics
@@ -66,6 +66,8 @@ def test_preconditioner_of_single_precision_finds_the_same_contact(monkeypatch):
 def small(monkeypatch):
     """Memory in small as of a large grid."""
     monkeypatch.setattr(level, "SINGLE", 0)
+    monkeypatch.setattr(edge_shape, "HELD", 2**18)
+    monkeypatch.setattr(smooth_edge, "AT_ONCE", 20)
     for module in (convolution, halved_convolution, arrays):
         monkeypatch.setattr(module, "BLOCK", 2**11)
 
@@ -111,7 +113,10 @@ def test_memory_of_a_contact_all_over_the_square(small):
 
 @pytest.mark.slow
 def test_memory_of_a_contact_with_a_smooth_edge(small):
-    """Of many patches, since those at the edge need more."""
+    """Patches at the edge hold 121 numbers each, those of the grid before too.
+
+    That is 80 bytes a patch here, 20 of 2400 x 2400 patches.
+    """
 
     def gap(grid):
         x, y = grid.x[:, None], grid.x
@@ -120,4 +125,4 @@ def test_memory_of_a_contact_with_a_smooth_edge(small):
     n = 600
     memory, found = memory_of(Indenter(gap, 0.6, None, round=False, edge_correction=True), n)
     assert found.edge is not None
-    assert memory < 24 + 30
+    assert memory < 24 + 130

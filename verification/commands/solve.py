@@ -26,9 +26,16 @@ from verification.commands.common.shared_options import AsJson, Flag, Strict
 from verification.commands.common.terminal import print_error, print_json, print_out, print_warnings
 from verification.commands.common.terminal_bar import progress_bar, require_gmsh
 from verification.credibility.model_error import ModelError, model_error
-from verification.desk.answer_summary import agreement, summary
 from verification.desk.case_wording import case_text
-from verification.desk.contact_answer import Answer, Difference, answer, differences, usual_seconds
+from verification.desk.contact_answer import (
+    Answer,
+    Difference,
+    agreement,
+    answer,
+    differences,
+    summary,
+    usual_seconds,
+)
 from verification.desk.stack_text import body_label, conditions, described, outside_verified, stack
 from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import FLAT

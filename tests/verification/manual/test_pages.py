@@ -6,7 +6,7 @@ import re
 import pytest
 
 from verification.guests.vectors.open_digits import FILE, shipped
-from verification.manual import manual_build, manual_pdf
+from verification.manual import manual_build
 from verification.manual.baseline_numbers import baseline, largest
 from verification.manual.generated_blocks import BLOCKS
 from verification.manual.sphinx_extension import restructured
@@ -47,7 +47,7 @@ def test_the_page_to_be_printed_loads_no_file_and_lists_its_chapters(tmp_path):
         '<section class="a" id="one">\n<h2>First <em>chapter</em><a class="headerlink" href="#one">x</a></h2>'
         '<img alt="" src="a.svg" />'
     )
-    page = manual_pdf.with_contents(manual_pdf.in_one_file(tmp_path / "index.html"))
+    page = manual_build.with_contents(manual_build.in_one_file(tmp_path / "index.html"))
     assert re.findall(r'(?:src|href)="([^"]+)"', page) == [
         "#heading-0",
         "#one",
