@@ -56,7 +56,7 @@ def draw(answer: Answer, title: str, below: Section | None = None) -> Figure:
         beside.set_visible(False)
     a = answer.numbers["contact_radius"][0] * 1e6
     if below:
-        _section(figure, *panels[0], below, a)
+        _section(figure, panels[0, 0], panels[0, 1], below, a)
     for course, colour, style in _cycle(answer.courses):
         upper.plot(course.x * 1e6, course.stress[0] / 1e6, linestyle=style, color=colour, label=_name(course))
         for at in answer.extremes:
