@@ -141,7 +141,7 @@ def solve(
     else:
         if strict:
             _print(case, first, apart, halved)
-        _print_model(case, beyond)
+        _print_model(case, beyond, checked=second is not None)
         print_out(_times(first, second, time.perf_counter() - begin))
     agree = all(difference.within for difference in apart)
     return EXIT[Outcome.AGREES if agree else Outcome.DISAGREES]
@@ -266,7 +266,7 @@ def _print(case: Case, first: Answer, apart: Sequence[Difference], halved: Seque
     )
 
 
-def _print_model(case: Case, beyond: ModelError) -> None:
+def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:
     """What the answer is good for: error of the model, range of the verification."""
     if beyond.parts:
         head = "the model itself is good to"
@@ -275,7 +275,8 @@ def _print_model(case: Case, beyond: ModelError) -> None:
         reasons = ", ".join(dict.fromkeys(reason for _, reason in beyond.missing))
         print_out(escape(f"{beyond.message()}: {reasons}"))
     if outside := outside_verified(case):
-        print_out(escape(f"beyond the range in which both methods were compared: {outside}; try --check"))
+        hint = "compared here by --check" if checked else "try --check"
+        print_out(escape(f"beyond the range in which both methods were compared: {outside}; {hint}"))
     if case.residual:
         print_out(
             "with residual stress; the shear of an interface near a free edge of its coating is not covered"
