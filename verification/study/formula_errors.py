@@ -104,7 +104,9 @@ def measure(points: int = 21) -> EffectiveStudy:
     """The whole study, on a map of ``points`` x ``points``."""
     started = time.perf_counter()
     ratio, thickness = np.logspace(-2, 2, points), np.logspace(np.log10(0.05), np.log10(20), points)
-    exact = np.array([[_effective(r, h) for h in thickness] for r in ratio])
+    # E_eff = S/2a at a = 1 of a film on a substrate of modulus 1.
+    punch = [[pressed(1.0, ((r, NU, h),), (1.0, NU), NODES, TAIL).kappa for h in thickness] for r in ratio]
+    exact = ratio[:, None] / (1 - NU**2) * np.array(punch)
     tables = [(f.name, np.array([f.modulus((r, NU), (1.0, NU), thickness) for r in ratio])) for f in FORMULAS]
     theirs = np.array([_perriot_barthel(float(r), thickness, e) for r, e in zip(ratio, exact, strict=True)])
     tables.insert(1, ("Perriot and Barthel 2004", theirs))
@@ -117,11 +119,6 @@ def measure(points: int = 21) -> EffectiveStudy:
         balls=curves(),
         seconds=time.perf_counter() - started,
     )
-
-
-def _effective(ratio: float, h: float) -> float:
-    """E_eff = S/2a at a = 1 of a film of modulus ``ratio`` on a substrate of modulus 1."""
-    return ratio / (1 - NU**2) * pressed(1.0, ((ratio, NU, h),), (1.0, NU), NODES, TAIL).kappa
 
 
 def _perriot_barthel(ratio: float, thickness: Array, exact: Array) -> Array:

@@ -298,7 +298,14 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
         ("governing mode", lambda pair: Cell(_mode(pair[1]), note=MODES[_mode(pair[1])])),
     ]
     if limited:
-        columns.append((f"admissible h [{units.length}]", lambda pair: _admissible(pair[1], units)))
+        columns.append(
+            (
+                f"admissible h [{units.length}]",
+                lambda pair: (
+                    "; ".join(between(pair[1], ends, units, safe=True) for ends in pair[1].ranges) or "none"
+                ),
+            )
+        )
     columns.append((f"checked at h [{units.length}]", lambda pair: _checked_at(*pair, units)))
     columns += [
         (
@@ -331,10 +338,6 @@ def _mode(one: Choice) -> str:
 def _best(j: Judged, one: Choice, units: Units) -> str:
     ends = [edge if end is None else end.h for end, edge in zip(one.even, one.h[[0, -1]], strict=True)]
     return " – ".join(rounded(h * j.curve.a_h / units.metre, 0.0) for h in ends)
-
-
-def _admissible(one: Choice, units: Units) -> str:
-    return "; ".join(between(one, pair, units, safe=True) for pair in one.ranges) or "none"
 
 
 def _checked_at(j: Judged, one: Choice, units: Units) -> Cell:
