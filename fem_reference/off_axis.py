@@ -22,8 +22,8 @@ from skfem import FacetBasis, LinearForm, asm
 
 from .axisymmetric import ELEMENTS, Discretisation
 from .linear_system import constrained_solve
+from .location import SolidPoints, solid_points
 from .mesh import Grading, MeridianMesh, meridian_mesh
-from .points import SolidPoints, solid_points
 from .recovery import HarmonicField
 from .scaling import LayeredSolid, Units
 from .solution import cartesian, tensor

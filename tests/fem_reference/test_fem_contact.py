@@ -51,18 +51,6 @@ def disc(a, n=400):
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_pressure_integrates_to_the_load(name):
-    s = solved(name)
-    r, weight = disc(s.contact_radius)
-    # the load tolerance of the solver is 2e-7; the quadrature sees a piecewise polynomial, good to 1e-5
-    assert np.sum(weight * s.pressure(r)) == pytest.approx(W, rel=1e-5)
-    assert s.diagnostics.residual_load < 2e-7
-    # two displacements a node; of fourth order eight nodes a triangle, and those of the rim
-    assert s.diagnostics.dofs == pytest.approx(16 * s.diagnostics.triangles, rel=0.1)
-    assert s.diagnostics.residual_equilibrium < 1e-10
-
-
-@pytest.mark.parametrize("name", CASES)
 def test_surface_carries_the_pressure_and_no_shear(name):
     s = solved(name)
     x = np.linspace(-2, 2, 81) * s.contact_radius
@@ -138,17 +126,6 @@ def test_scaling_with_load_radius_and_moduli():
     half = pressed(CASES["stiff"], radius=2 * R, load=W / 2, **cheap)
     assert half.contact_radius == pytest.approx(base.contact_radius, rel=1e-9, abs=0)
     assert half.peak_pressure == pytest.approx(base.peak_pressure / 2, rel=1e-9)
-
-
-def test_solution_is_symmetric_about_the_axis():
-    s = solved("interlayer")
-    x, z = np.array([0.3, 0.8]) * A_H, 0.2 * A_H
-    right, left, across = s.stress(x, 0.0, z), s.stress(-x, 0.0, z), s.stress(0.0, x, z)
-    np.testing.assert_allclose(left[0, 2], -right[0, 2], rtol=1e-12)
-    np.testing.assert_allclose(across[1, 1], right[0, 0], rtol=1e-12)
-    np.testing.assert_allclose(across[0, 0], right[1, 1], rtol=1e-12)
-    u = s.displacement(x, x, z)
-    np.testing.assert_allclose(u[0], u[1], rtol=1e-12)
 
 
 @pytest.mark.parametrize("order", [2, 3, 4])
@@ -336,12 +313,6 @@ def test_reversed_friction_mirrors_the_field():
     np.testing.assert_allclose(
         backward.displacement(-x, y, z)[0], -forward.displacement(x, y, z)[0], rtol=1e-9
     )
-
-
-def test_friction_does_not_change_the_pressure():
-    assert sliding().contact_radius == sliding(0.0).contact_radius
-    x = np.linspace(0, 1, 7) * A_H
-    np.testing.assert_array_equal(sliding().pressure(x), sliding(0.0).pressure(x))
 
 
 @pytest.mark.slow

@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 
 import pytest
-from quick_case import COMMAND, QUICK, coatcheck, coatcheck_process
+from quick_case import COMMAND, QUICK, coatcheck_process
 
 from verification.cases.case_file import parse_case
 from verification.cases.published_file import published_cases, read_published
@@ -222,51 +222,11 @@ def test_half_written_files_of_a_killed_run_are_cleared_and_others_left(tmp_path
     assert all(path.exists() for path in mine)
 
 
-@pytest.fixture
-def small_disk(tmp_path):
-    """A disk of 4 MB of its own; skipped where none may be mounted."""
-    place = tmp_path / "disk"
-    place.mkdir()
-    if subprocess.run(
-        ["mount", "-t", "tmpfs", "-o", "size=4m", "none", place], capture_output=True
-    ).returncode:
-        pytest.skip("no disk may be mounted here")
-    yield place
-    subprocess.run(["umount", "-l", place], check=True)
-
-
 def one_sentence(done: subprocess.CompletedProcess, said: str) -> None:
     assert done.returncode == 2, done.stderr
     assert done.stderr.startswith("coatcheck: ")
     assert done.stderr.count("\n") == 1, done.stderr
     assert said in done.stderr
-
-
-@pytest.mark.slow
-def test_full_disk_is_one_sentence_and_the_earlier_results_stay(tmp_path, small_disk):
-    (tmp_path / "quick.toml").write_text(QUICK)
-    out = small_disk / "out"
-    assert coatcheck("run", "quick.toml", "-q", "-o", str(out), cwd=tmp_path).returncode == 0
-    earlier = content(out)
-    count = 0
-    for left in (0, 4096, 12288, 40960, 81920, 163840, 327680, 655360):
-        ballast = small_disk / "ballast"
-        free = shutil.disk_usage(small_disk).free
-        ballast.write_bytes(b"\0" * max(free - left, 0))
-        done = coatcheck("run", "quick.toml", "-q", "-o", str(out), cwd=tmp_path)
-        ballast.unlink()
-        if done.returncode == 0:
-            break
-        one_sentence(done, "No space left")
-        assert content(out) == earlier or content(out).keys() == earlier.keys()
-        # What stands can still be read: nothing was cut short.
-        for file in (*out.glob("cases/*"), *out.glob("planes/*")):
-            read_checked(file)
-        assert content(out)["report.html"] == earlier["report.html"]
-        assert content(out)["report.json"] == earlier["report.json"]
-        count += 1
-    assert count >= 3
-    sys.stdout.write(f"disk full at {count} moments: one message each, earlier results intact\n")
 
 
 def test_limit_on_file_size_is_one_sentence_and_the_earlier_results_stay(tmp_path):

@@ -171,8 +171,7 @@ def test_excess_keeps_its_digits_when_it_is_tiny(coatings, substrate):
 
 
 @solids
-@pytest.mark.parametrize("load", ["normal", "in-plane", "anti-plane"])
-def test_fields_satisfy_equilibrium_and_hooke(coatings, substrate, load):
+def test_anti_plane_fields_satisfy_equilibrium_and_hooke(coatings, substrate):
     k = np.array([0.5, 2.0])
     for layer in range(len(coatings) + 1):
         top = sum(c[2] for c in coatings[:layer])
@@ -188,22 +187,11 @@ def test_fields_satisfy_equilibrium_and_hooke(coatings, substrate, load):
                 12 * step
             )
 
-        kwargs = {"coatings": coatings, "substrate": substrate, "load": load}
+        kwargs = {"coatings": coatings, "substrate": substrate, "load": "anti-plane"}
         s = stress_frf(k, z, layer, **kwargs)
         u = displacement_frf(k, z, layer, **kwargs) / k
         ds, du, s, u = ddz(s), ddz(u), s[:, 2], u[:, 2]
-        if load == "anti-plane":
-            residuals = [ds[0] - k * s[1], s[0] - G * du[0], s[1] - G * k * u[0]]
-        else:
-            zz, Lz, LL, TT = s
-            residuals = [
-                ds[0] - k * Lz,  # d_z s_zz + i k (i Lz) = 0
-                ds[1] + k * LL,  # i d_z Lz + i k LL = 0
-                Lz - G * (du[1] + k * u[0]),
-                E * du[0] - (zz - nu * (LL + TT)),
-                -E * k * u[1] - (LL - nu * (zz + TT)),  # i k (i U)
-                TT - nu * (zz + LL),
-            ]
+        residuals = [ds[0] - k * s[1], s[0] - G * du[0], s[1] - G * k * u[0]]
         scale = np.abs(s).max() * max(1, k.max())
         assert np.abs(residuals).max() < 1e-8 * scale  # differences: 1e-16 / 1e-3 and 1e-12
 

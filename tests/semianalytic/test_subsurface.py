@@ -1,7 +1,5 @@
 """Fields by rings: closed forms, the sum of point forces, Hankel integrals, field equations, continuity."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from numpy.polynomial import legendre
@@ -139,33 +137,6 @@ def test_surface_tractions_are_minus_p_and_minus_q(body):
         x = np.linspace(-1.5, 1.5, 13)
         s, p = stress(x, 0.21, 0.0, pressure=pressure, body=body), pressure.pressure(x, 0.21)
         np.testing.assert_allclose(s[2], [-F * p, 0 * p, -p], rtol=0, atol=RINGS)
-
-
-def test_layers_of_equal_moduli_are_no_layers():
-    x, y = np.array([0.0, 0.4, -0.8, 1.0, 1.7]), np.array([0.1, 0.0, 0.3, 0.0, -2.2])
-    for body in (
-        Body(((1.0, NU, 0.02), (1.0, NU, 0.7)), (1.0, NU), F),
-        replace(BARE, coatings=((1.0, NU, 1.0),)),
-    ):
-        interfaces = np.cumsum(body.thickness)
-        for z in (0.0, 0.013, interfaces[0], 0.1, interfaces[-1], 3.0):
-            layer = int(np.searchsorted(interfaces, z))
-            for field in (stress, displacement):
-                bare, layered = field(x, y, z), field(x, y, z, layer, body=body)
-                # tables of the response of deeper layers: 1e-7 of the largest
-                np.testing.assert_allclose(layered, bare, rtol=0, atol=2e-7 * np.abs(bare).max())
-
-
-@pytest.mark.parametrize("body", [COATED, THIN, Body(((0.05, 0.5, 0.02),), (1.0, 0.0), F)])
-def test_tractions_and_displacements_continue_across_interfaces(body):
-    x, y = np.array([0.0, 0.5, -1.0, 1.6]), np.array([0.2, 0.0, 0.0, -1.0])
-    for layer, depth in enumerate(np.cumsum(body.thickness)):
-        above, below = (stress(x, y, depth, side, body=body) for side in (layer, layer + 1))
-        # closed forms plus tables against tables, each 1e-7 of its largest
-        np.testing.assert_allclose(above[2], below[2], rtol=0, atol=5e-7 * np.abs(above).max())
-        assert np.abs(above[0, 0] - below[0, 0]).max() > 1e-2  # which jumps
-        above, below = (displacement(x, y, depth, side, body=body) for side in (layer, layer + 1))
-        np.testing.assert_allclose(above, below, rtol=0, atol=5e-7 * np.abs(above).max())
 
 
 def hankel(x, z, layer, body, k_max):

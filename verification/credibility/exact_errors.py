@@ -28,6 +28,7 @@ UNIFORM, HERTZ = "uniform pressure", "Hertz's pressure"
 SURFACE = np.array([-1.7, -1.15, -0.97, -0.8, -0.5, -0.2, 0.0, 0.3, 0.6, 0.9, 1.02, 1.3])
 DEPTHS = (0.02, 0.15, 0.48, 1.2, 2.5)
 PLANE = 0.6  # depth of the plane by FFT, over ten patches, where patches of a pressure without steps suffice
+INSIDE = np.array([-0.8, -0.55, -0.3, 0.0, 0.21, 0.47, 0.7])  # of the radius, off the patch centres
 # Of the half-width of the grid: centres along an axis, off it, in the corner, none beside the rim.
 QUARTER = ((0.0, 0.3, 0.75, 0.2, 0.5, 0.6, 0.9, 1.0), (0.0, 0.0, 0.0, 0.7, 0.5, 0.3, 0.9, 1.0))
 SIDE = 0.07  # of a patch, over a_h
@@ -107,7 +108,27 @@ def _errors(problem: CoatedContact, exact: HankelField, p_h: float, patches: int
         plane = solution.displacement_plane(z)[:, i, j]
         errors["displacement on a plane"] = _largest([plane - exact.displacement(*at)]) / sink
         errors["deflection on a quarter"] = _deflection_error(problem, exact, patches) / sink
+        errors["stress of patches"] = _patch_error(problem, exact, patches) / p_h
     return errors
+
+
+def _patch_error(problem: CoatedContact, exact: HankelField, patches: int) -> float:
+    """Largest error of the stresses [Pa] half a patch and two below the surface, off the edge.
+
+    They are summed over the patches, as under a rough indenter, in place of rings around each point.
+    """
+    from semianalytic import patch_field, prescribed
+    from semianalytic.grid import Grid
+    from semianalytic.inputs import Body
+
+    a = exact.pressure.a
+    grid = Grid(patches, 2.04 * a / patches)
+    mean = prescribed.patch_mean(prescribed.Prescribed(a, exact.pressure.pressure), grid.x, grid.d)
+    body = Body(problem.coatings, problem.substrate, problem.friction, None)
+    x, z = np.meshgrid(a * INSIDE, grid.d * np.array([0.5, 2.0]))
+    y = np.full(x.shape, 0.13 * a)
+    found = patch_field.stress(x, y, z, 0, grid_x=grid.x, pressure=mean, body=body)
+    return _largest([patch_field.tensor(found) - exact.stress(x, y, z, 0)])
 
 
 def _deflection_error(problem: CoatedContact, exact: HankelField, patches: int) -> float:

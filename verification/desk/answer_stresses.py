@@ -43,8 +43,6 @@ from verification.study.largest_stresses import (
     with_residual,
 )
 
-__all__ = ["Course", "Extreme", "first_principal", "stresses"]
-
 REACH, POINTS = 2.0, 401  # of a course, over a
 
 

@@ -53,7 +53,7 @@ def plotter(fields: Fields, name: str, *, off_screen: bool) -> Any:
     stretch = _stretch([found for _, found in shown], depth)
     label = name.replace("[Pa]", "[MPa]")
     # Both methods are shown to the same depth and width, in one scale, by one camera.
-    extent = min(_half_width(found) for _, found in shown)
+    extent = min(max(float(block.bounds[1]) for block in found) for _, found in shown)
     shown = [(title, _cut(found, extent, depth / stretch)) for title, found in shown]
     values = [np.asarray(b.point_data[name]) / MEGA for _, found in shown for b in found]
     limits = [float(min(np.nanmin(v) for v in values)), float(max(np.nanmax(v) for v in values))]
@@ -105,10 +105,6 @@ def _stretch(shown: list[Any], depth: float) -> float:
     blocks = [block for found in shown for block in found]
     layers = [float(b.bounds[5] - b.bounds[4]) for b in blocks if b.bounds[5] < depth * (1 - 1e-6)]
     return float(np.clip(FILM * depth / min(layers), 1.0, MOST)) if layers else 1.0
-
-
-def _half_width(found: Any) -> float:
-    return max(float(block.bounds[1]) for block in found)
 
 
 def _cut(found: Any, half: float, depth: float) -> Any:

@@ -11,8 +11,6 @@ from verification.problem.array_types import Array
 from verification.problem.coated_contact import FLAT, CoatedContact
 from verification.sources.source_registry import METHODS, SOURCES
 
-__all__ = ["Section", "section"]
-
 WIDTH, BELOW, COLUMNS, ROWS = 2.0, 0.5, 161, 24  # extents over a; points along x, in depth of a layer
 
 

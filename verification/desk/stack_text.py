@@ -6,8 +6,6 @@ from verification.cases.case_file import Case
 from verification.cases.random_problems import RATIO, THICKNESS
 from verification.problem.coated_contact import BALL, FLAT, CoatedContact
 
-__all__ = ["body_label", "conditions", "described", "outside_verified", "stack"]
-
 
 def stack(case: Case) -> str:
     """The layers from the ball to the substrate: "ball / DLC 2 um / Cr 0.2 um / steel"."""

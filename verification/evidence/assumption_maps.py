@@ -240,15 +240,11 @@ class AssumptionMap:
             if np.isfinite(value).any():
                 break
         near = [_window(axis.nodes, x, 2) for axis, x in zip(self.axes, positions, strict=True)]
-        return value * scale, (error + _contracted(self._scaled_uncertainty, near)) * scale
+        return value * scale, (error + _contracted(self.uncertainty / self._scales, near)) * scale
 
     @cached_property
     def _scaled(self) -> Array:
         return self.change / self._scales
-
-    @cached_property
-    def _scaled_uncertainty(self) -> Array:
-        return self.uncertainty / self._scales
 
     @cached_property
     def _scales(self) -> Array:

@@ -67,13 +67,9 @@ def of_case(name: str) -> bytes:
         surface.legend(frameon=False, loc="best")
         _below(below, result)
         _distances(distances, result)
-        return _svg(figure)
-
-
-def _svg(figure: Figure) -> bytes:
-    content = io.BytesIO()
-    figure.savefig(content, format="svg", metadata={"Date": None, "Creator": None})
-    return content.getvalue()
+        content = io.BytesIO()
+        figure.savefig(content, format="svg", metadata={"Date": None, "Creator": None})
+        return content.getvalue()
 
 
 def _section(axes: Any, result: CaseResult) -> None:

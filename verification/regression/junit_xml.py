@@ -50,37 +50,37 @@ def junit_xml(
 
 
 def _suite(root: Element, result: CaseResult, info: RunInfo) -> None:
-    suite = SubElement(
-        root,
-        "testsuite",
-        name=_text(result.name),
-        time=f"{result.seconds:.3f}",
-        timestamp=_text(info.started),
-    )
+    time, started = f"{result.seconds:.3f}", _text(info.started)
+    suite = SubElement(root, "testsuite", name=_text(result.name), time=time, timestamp=started)
     properties = SubElement(suite, "properties")
     SubElement(properties, "property", name="title", value=_text(result.title))
+
+    def made(name: str) -> Element:
+        return SubElement(suite, "testcase", classname=_text(result.name), name=_text(name), time="0")
+
     for claim, verdict in result.verdicts:
-        name = f"{claim.quantity} on {claim.line}: {' against '.join(claim.between)}"
-        item = SubElement(suite, "testcase", classname=_text(result.name), name=_text(name), time="0")
+        item = made(f"{claim.quantity} on {claim.line}: {' against '.join(claim.between)}")
         text = (
             f"{verdict.reason}\ndifference {_number(verdict.difference)}, uncertainty "
             f"{_number(verdict.uncertainty)}, cap {_number(claim.cap)}, margin {_number(verdict.margin)}"
         )
         _mark(item, verdict.outcome, verdict.reason, text)
     for one in result.invariants:
-        name = f"{one.name} of {one.source}"
-        item = SubElement(suite, "testcase", classname=_text(result.name), name=_text(name), time="0")
+        item = made(f"{one.name} of {one.source}")
         text = f"{one.message}\nresidual {_number(one.value)}, bound {_number(one.bound)}"
         _mark(item, one.outcome, one.message, text)
     if not result.verdicts:
         # A case without a result must not vanish from the count.
-        item = SubElement(suite, "testcase", classname=_text(result.name), name="case", time="0")
+        item = made("case")
         failures = [f"{s.source}: {s.failure}" for s in result.sources if s.failure is not None]
         _mark(item, Outcome.NO_RESULT, "the case has no comparison", "\n".join(failures))
-    suite.set("tests", str(len(suite.findall("testcase"))))
-    suite.set("failures", str(len(suite.findall("testcase/failure"))))
-    suite.set("errors", str(len(suite.findall("testcase/error"))))
-    suite.set("skipped", str(len(suite.findall("testcase/skipped"))))
+    for name, where in (
+        ("tests", ""),
+        ("failures", "/failure"),
+        ("errors", "/error"),
+        ("skipped", "/skipped"),
+    ):
+        suite.set(name, str(len(suite.findall(f"testcase{where}"))))
 
 
 def _mark(item: Element, outcome: Outcome, reason: str, text: str) -> None:

@@ -1,7 +1,15 @@
-"""Error of formulas against the exact solution."""
+"""Error of formulas: effective moduli, and the usual correction for an elastic ball.
+
+The usual correction takes the ball into account by E* of the substrates alone: a, p0 and stresses are those
+over the scales a_h, p_h of the coated flat under a rigid sphere, at the same h/a_h and E1/E2, with
+
+    1/E* = (1 - nu_f^2)/E_f + (1 - nu_b^2)/E_b
+
+in the scales. It is exact for uncoated bodies and for a rigid ball. By the exact reference, nu = 0.3.
+"""
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -10,12 +18,63 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from verification.problem.array_types import Array
+from verification.problem.coated_contact import CoatedContact
 from verification.running.checked_files import write_checked
 from verification.running.json_records import decode, encode
 from verification.running.pool.pool_task import Task
+from verification.sources.exact_sources import solve_exactly
 from verification.sources.references.effective_modulus import FORMULAS, PERRIOT_BARTHEL_N, perriot_barthel
 from verification.sources.references.flat_punch import pressed
-from verification.study.usual_correction import BallCurve, curves
+
+COATINGS = (4.0, 0.25)  # E1/E2 of the coating on the flat
+THICKNESSES = (0.1, 0.5, 1.0)  # h / a_h
+FRICTION = 0.25
+QUANTITIES = ("p0 / p_h", "a / a_h", "sigma_xx(-a) / p_h")
+
+
+@dataclass(frozen=True)
+class BallCurve:
+    """``value`` of ``quantity`` over ``ratio`` = E_ball/E_flat; ``usual`` is that by the usual correction.
+
+    coating : E1/E2.   thickness : h/a_h.
+    """
+
+    quantity: str
+    coating: float
+    thickness: float
+    ratio: tuple[float, ...]
+    value: tuple[float, ...]
+    usual: float
+
+
+def curves(points: int = 13) -> tuple[BallCurve, ...]:
+    """Curves of peak pressure, contact radius, tension at the trailing edge; E_ball/E_flat from 0.1 to 100.
+
+    points : of each curve.
+    """
+    ratio = np.geomspace(0.1, 100, points).tolist()
+    found = []
+    for coating in COATINGS:
+        for thickness in THICKNESSES:
+            values = [_numbers(coating, thickness, r) for r in ratio]
+            for i, (name, usual) in enumerate(
+                zip(QUANTITIES, _numbers(coating, thickness, None), strict=True)
+            ):
+                along = tuple(value[i] for value in values)
+                found.append(BallCurve(name, coating, thickness, tuple(ratio), along, usual))
+    return tuple(found)
+
+
+def _numbers(coating: float, thickness: float, ratio: float | None) -> tuple[float, float, float]:
+    """p0/p_h, a/a_h and sigma_xx(-a, 0, 0)/p_h; ``ratio`` None is the rigid ball."""
+    E, nu = 210e9, 0.3
+    bare = CoatedContact(10e-3, 20.0, (), (E, nu), FRICTION, None if ratio is None else (ratio * E, nu, ()))
+    problem = replace(bare, coatings=((coating * E, nu, thickness * bare.a_h),))
+    found = solve_exactly(problem, {"estimate_uncertainty": False})
+    a = found.contact_radius
+    tension = found.stress(np.array([-a]), 0.0, 0.0, layer=0)[0, 0, 0]
+    return found.peak_pressure / bare.p_h, a / bare.a_h, float(tension) / bare.p_h
+
 
 Rows = tuple[tuple[float, ...], ...]
 
@@ -45,7 +104,9 @@ def measure(points: int = 21) -> EffectiveStudy:
     """The whole study, on a map of ``points`` x ``points``."""
     started = time.perf_counter()
     ratio, thickness = np.logspace(-2, 2, points), np.logspace(np.log10(0.05), np.log10(20), points)
-    exact = np.array([[_effective(r, h) for h in thickness] for r in ratio])
+    # E_eff = S/2a at a = 1 of a film on a substrate of modulus 1.
+    punch = [[pressed(1.0, ((r, NU, h),), (1.0, NU), NODES, TAIL).kappa for h in thickness] for r in ratio]
+    exact = ratio[:, None] / (1 - NU**2) * np.array(punch)
     tables = [(f.name, np.array([f.modulus((r, NU), (1.0, NU), thickness) for r in ratio])) for f in FORMULAS]
     theirs = np.array([_perriot_barthel(float(r), thickness, e) for r, e in zip(ratio, exact, strict=True)])
     tables.insert(1, ("Perriot and Barthel 2004", theirs))
@@ -58,11 +119,6 @@ def measure(points: int = 21) -> EffectiveStudy:
         balls=curves(),
         seconds=time.perf_counter() - started,
     )
-
-
-def _effective(ratio: float, h: float) -> float:
-    """E_eff = S/2a at a = 1 of a film of modulus ``ratio`` on a substrate of modulus 1."""
-    return ratio / (1 - NU**2) * pressed(1.0, ((ratio, NU, h),), (1.0, NU), NODES, TAIL).kappa
 
 
 def _perriot_barthel(ratio: float, thickness: Array, exact: Array) -> Array:

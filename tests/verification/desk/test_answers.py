@@ -8,8 +8,7 @@ from scipy.optimize import minimize_scalar
 
 from verification.cases.graded_coating import Course, moduli
 from verification.desk.answer_stresses import first_principal
-from verification.desk.answer_summary import summary
-from verification.desk.contact_answer import answer, differences
+from verification.desk.contact_answer import answer, differences, summary
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import von_mises
 from verification.sources.source_registry import EXACT, METHODS, solvers

@@ -6,11 +6,12 @@ import re
 import pytest
 
 from verification.guests.vectors.open_digits import FILE, shipped
-from verification.manual import manual_build, manual_pdf
+from verification.manual import manual_build
 from verification.manual.baseline_numbers import baseline, largest
 from verification.manual.generated_blocks import BLOCKS
 from verification.manual.sphinx_extension import restructured
 from verification.manual.tour_output import WORKED
+from verification.manual.tour_session import COMMANDS, read_session
 from verification.page.number_text import scientific
 
 SLOW = ("solved", *WORKED)  # solve problems
@@ -47,7 +48,7 @@ def test_the_page_to_be_printed_loads_no_file_and_lists_its_chapters(tmp_path):
         '<section class="a" id="one">\n<h2>First <em>chapter</em><a class="headerlink" href="#one">x</a></h2>'
         '<img alt="" src="a.svg" />'
     )
-    page = manual_pdf.with_contents(manual_pdf.in_one_file(tmp_path / "index.html"))
+    page = manual_build.with_contents(manual_build.in_one_file(tmp_path / "index.html"))
     assert re.findall(r'(?:src|href)="([^"]+)"', page) == [
         "#heading-0",
         "#one",
@@ -89,3 +90,9 @@ def test_the_manual_builds_without_a_warning_and_loads_nothing(tmp_path):
     assert len(pages) > 20
     loaded = r'<(?:script|img|link|iframe)[^>]+(?:src|href)="(?:https?:)?//'
     assert [path.name for path, text in pages.items() if re.search(loaded, text)] == []
+
+
+def test_the_record_of_the_tour_is_of_its_commands():
+    recorded = read_session()["commands"]
+    assert [one["words"] for one in recorded] == list(COMMANDS)
+    assert all(one["seconds"] > 0 and one["printed"] for one in recorded)

@@ -22,7 +22,6 @@ from verification.report.figures.line_panels import case_figures
 from verification.report.sections.accuracy_section import accuracies, coverage_table
 from verification.report.tables.case_lookup import contact_radius, difference, judged, reference_source
 from verification.report.tables.case_tables import (
-    budget_table,
     comparison_table,
     contact_tables,
     failing_table,
@@ -139,13 +138,6 @@ def test_failing_verdicts_lead_their_table_and_every_quantity_has_a_row():
     assert len(table.rows) == len({(c.quantity, c.line) for c, _ in result.verdicts})
     shown = sum(cell.css == "verdict disagrees" for row in table.rows for cell in row.cells)
     assert shown == sum(v.outcome is Outcome.DISAGREES for v in bad)
-
-
-def test_the_budget_names_the_knob_that_dominates():
-    table = budget_table(result_of(COATED, points=11))
-    dominating = [row.cells[1].text for row in table.rows if row.cells[4].text]
-    assert len(dominating) == 6
-    assert len(set(dominating)) == 1
 
 
 def test_accuracy_tells_an_honest_estimate_from_a_vain_one():

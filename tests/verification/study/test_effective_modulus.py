@@ -11,8 +11,7 @@ from verification.report.report_page import render
 from verification.running.case_result import RunInfo
 from verification.running.checked_files import read_checked
 from verification.study import formula_errors as effective_study
-from verification.study.formula_errors import EffectiveStudy, from_json, measure, to_json
-from verification.study.usual_correction import curves
+from verification.study.formula_errors import EffectiveStudy, curves, from_json, measure, to_json
 
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
 

@@ -10,8 +10,7 @@ from synthetic_solves import STUDY
 from verification.cases.toml_file import CaseError
 from verification.problem.coated_contact import CoatedContact
 from verification.study.choice.critical_load import Critical, Ramp, critical, ramps
-from verification.study.choice.failure_criteria import Criteria
-from verification.study.choice.strength import Uniform
+from verification.study.choice.failure_criteria import Criteria, Uniform
 from verification.study.largest_stresses import QUANTITIES
 from verification.study.pages.load_page import answers, write_load_report
 from verification.study.study_plan import parse_study

@@ -10,10 +10,9 @@ from scipy.special import ndtr
 
 from verification.cases.toml_file import CaseError
 from verification.cases.unit_numbers import Units
-from verification.study.choice.failure_criteria import Criteria, judged
-from verification.study.choice.strength import LogNormal, Uniform, strength_of
+from verification.study.choice.failure_criteria import Criteria, LogNormal, Uniform, judged, strength_of
 from verification.study.choice.thickness_choice import DRAWN, choice, sampled
-from verification.study.pages.thickness_recommendation import answers
+from verification.study.pages.thickness_page import answers
 from verification.study.study_plan import parse_study
 from verification.study.study_table import read_columns
 from verification.study.thickness_curves import curves

@@ -26,8 +26,7 @@ def manual(
         pdf: Also write coatcheck.pdf there, through an installed Chromium or Chrome.
         time_limit: Seconds that printing may take.
     """
-    from verification.manual.manual_build import build
-    from verification.manual.manual_pdf import print_manual
+    from verification.manual.manual_build import build, print_manual
     from verification.page.pdf_file import NoBrowser
 
     try:

@@ -55,7 +55,7 @@ class Fault:
     it, stated before the first trial.   cases : of the default run, in the trial.   solve : sources solved
     under the fault, the others are taken from the clean run.   published : published cases in the trial.
     reason, remedy : of a fault that no check catches, why not and which check would.
-    equivalent : the code converges to the same numbers, for this ``reason``.
+    equivalent : no number changes by more than ``EQUIVALENT_CHANGE``, for this ``reason``.
     """
 
     name: str

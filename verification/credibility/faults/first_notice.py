@@ -27,7 +27,7 @@ class Noticed(StrEnum):
     STUDY = "study"
     HARNESS = "published, self-test or manifest"
     STOPPED = "no result"
-    EQUIVALENT = "equivalent"
+    EQUIVALENT = "harmless"
     BASELINE = "baseline"
     NOTHING = "unit tests at most"
 
@@ -77,12 +77,12 @@ def noticed_by(record: Record, *kinds: Noticed) -> int:
 
 
 def method_score(record: Record) -> tuple[int, int]:
-    """Faults of the method that a counted kind notices, of all but the equivalent ones."""
+    """Faults of the method that a counted kind notices, of all but the harmless ones."""
     return noticed_by(record, *COUNTED), len(of_method(record)) - noticed_by(record, Noticed.EQUIVALENT)
 
 
 def kinds(record: Record) -> str:
-    """Each counted kind with the faults that it notices first, and the equivalent faults."""
+    """Each counted kind with the faults that it notices first, and the harmless faults."""
     parts = [f"{noticed_by(record, kind)} by {kind}" for kind in COUNTED]
     apart = noticed_by(record, Noticed.EQUIVALENT)
-    return ", ".join(parts) + (f"; {apart} equivalent apart" if apart else "")
+    return ", ".join(parts) + (f"; {apart} harmless apart" if apart else "")

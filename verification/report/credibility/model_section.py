@@ -43,13 +43,11 @@ def _conclusion(maps: Sequence[AssumptionMap]) -> str:
     """Up to where the model is good to 1 %, for the worst coating; what was not measured."""
     texts = []
     for words, scalar in (("p0, delta and the contact radius", True), ("the stresses", False)):
-        limits = [
-            f"{_coordinate(one)} = {plain(reach, 2)} ({one.title})"
-            for one in maps
-            if one.driver is not None
-            and (reach := _least([one.reach(i, LEVELS[1]) for i in _measured(one, scalar=scalar)]))
-            is not None
-        ]
+        limits = []
+        for one in (one for one in maps if one.driver is not None):
+            reaches = [one.reach(i, LEVELS[1]) for i in _measured(one, scalar=scalar)]
+            if known := [reach for reach in reaches if reach is not None]:
+                limits.append(f"{_coordinate(one)} = {plain(min(known), 2)} ({one.title})")
         texts.append(f"{words} {'up to ' + ', '.join(limits) if limits else 'all over the maps'}")
     text = (
         f"For the worst coating the model itself is good to {_percent(LEVELS[1])} of {'; of '.join(texts)}."
@@ -70,10 +68,6 @@ def _measured(one: AssumptionMap, *, scalar: bool | None = None) -> list[int]:
 def _coordinate(one: AssumptionMap) -> str:
     """The coordinate that the change grows with; "" where no rate is stated."""
     return "" if one.driver is None else WORDS[one.axes[one.driver].name]
-
-
-def _least(values: Sequence[float | None]) -> float | None:
-    return min((value for value in values if value is not None), default=None)
 
 
 def _reaches(maps: Sequence[AssumptionMap]) -> Table:
@@ -110,7 +104,7 @@ def _largest(one: AssumptionMap) -> Table:
             if len(axis.values) > 1
         )
         values = (number(float(table[i][worst]), _percent) for table in (one.change, one.uncertainty))
-        rows.append(row(_name(one.quantities[i]), *values, where))
+        rows.append(row(NAMES.get(one.quantities[i], one.quantities[i]), *values, where))
     return Table("The largest change of the map.", ["quantity", "largest", "±", "where"], rows)
 
 
@@ -126,11 +120,12 @@ def _part(one: AssumptionMap) -> Part:
         return Part(text, [_largest(one), _numbers(one)], title=title)
     at = _slice(one)
     x, y, planes = one.plane(ACROSS, UP, at)
-    panels = [
-        Panel(_name(quantity), _draw(x, y, plane, f"{one.title}: {_name(quantity)}"), _span(plane), "")
-        for quantity, plane in zip(one.quantities, planes, strict=True)
-        if np.isfinite(plane).any()
-    ]
+    panels = []
+    for quantity, plane in zip(one.quantities, planes, strict=True):
+        if np.isfinite(plane).any():
+            name = NAMES.get(quantity, quantity)
+            span = f"from {_percent(float(np.nanmin(plane)))} to {_percent(float(np.nanmax(plane)))}"
+            panels.append(Panel(name, _draw(x, y, plane, f"{one.title}: {name}"), span, ""))
     legend = [
         (tint(COLOUR, 0.0), f"below {_percent(LEVELS[0])}"),
         (tint("muted", NO_ANSWER), "no answer of the model"),
@@ -176,18 +171,10 @@ def _ticks(values: tuple[float, ...], shown: Array) -> list[tuple[float, str]]:
     return [(float(np.log(value)), f"{value:g}") for value in values if low <= np.log(value) <= high]
 
 
-def _span(plane: Array) -> str:
-    return f"from {_percent(float(np.nanmin(plane)))} to {_percent(float(np.nanmax(plane)))}"
-
-
 def _extent(name: str, values: tuple[float, ...]) -> str:
     if name == "ball" and values == (0.0,):
         return "a rigid ball"
     return f"{WORDS[name]} = {values[0]:g}" + (f" to {values[-1]:g}" if len(values) > 1 else "")
-
-
-def _name(quantity: str) -> str:
-    return NAMES.get(quantity, quantity)
 
 
 def _percent(value: float) -> str:

@@ -95,10 +95,6 @@ def swatch(style: Style, *, marked: bool = False) -> Markup:
     ).format(style.colour, style.width, dash or "none", style.opacity)
 
 
-def _on(result: CaseResult, line: str) -> list:
-    return [profile for profile in result.profiles if profile.line == line]
-
-
 def _pairs(result: CaseResult, line: str, quantity: str) -> list[tuple[str, str]]:
     """The claimed pairs that are drawn: methods with each other, sources with the reference source."""
     best = reference_source(result)
@@ -111,11 +107,12 @@ def _pairs(result: CaseResult, line: str, quantity: str) -> list[tuple[str, str]
 
 
 def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
-    a_h, unit = scale(result, "a_h"), _scale_of(quantity)
+    a_h = scale(result, "a_h")
+    unit = QUANTITIES[quantity].scale if quantity in QUANTITIES else "p_h"
     curves = [
         Curve(profile.position / a_h, profile.value / scale(result, unit), source_style(profile.source))
-        for profile in _on(result, line)
-        if profile.quantity == quantity
+        for profile in result.profiles
+        if (profile.quantity, profile.line) == (quantity, line)
     ]
     claims = [(c, v) for c, v in result.verdicts if (c.quantity, c.line) == (quantity, line)]
     differences = []
@@ -148,10 +145,6 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
         note = f"{len(bad)} of {len(claims)} do not agree, difference {scientific(largest)}"
     title = f"{symbol_of(quantity)} / {unit}, {line}"
     return Panel(title, figure, note if claims else "not compared", "fails" if bad else "")
-
-
-def _scale_of(quantity: str) -> str:
-    return QUANTITIES[quantity].scale if quantity in QUANTITIES else "p_h"
 
 
 def _unjudged(result: CaseResult, claims: list[Claim], curves: list[Curve]) -> list[tuple[float, float]]:

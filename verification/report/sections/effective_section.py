@@ -27,8 +27,7 @@ from verification.problem.array_types import Array
 from verification.report.report_material import Material
 from verification.report.report_words import stated
 from verification.sources.references.effective_modulus import PERRIOT_BARTHEL_N
-from verification.study.formula_errors import EffectiveStudy
-from verification.study.usual_correction import FRICTION, BallCurve
+from verification.study.formula_errors import FRICTION, BallCurve, EffectiveStudy
 
 LEVELS = (0.01, 0.05, 0.1, 0.2, 0.5)
 # One shade more for each level passed; two colours for too stiff and too compliant.

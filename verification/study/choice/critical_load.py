@@ -4,7 +4,7 @@ Each stress over p_h, without the residual stress, is a smooth function of log W
 part; p_h itself grows as W^(1/3). Where strengths scatter, so does the critical load.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,8 +17,6 @@ from verification.study.choice.failure_criteria import Criteria
 from verification.study.choice.thickness_choice import HALVED, strengths_drawn
 from verification.study.largest_stresses import QUANTITIES
 from verification.study.study_table import SOURCES
-
-__all__ = ["Critical", "Ramp", "critical", "ramps"]
 
 SAMPLES = 2001  # of a ramp
 BAND = (0.05, 0.5, 0.95)  # quantiles of a critical load
@@ -153,15 +151,13 @@ def ramps(columns: Mapping[str, NDArray[Any]]) -> tuple[Ramp, ...]:
     keys = sorted(set(zip(*(columns[name][mine].tolist() for name in names), strict=True)))
     found = []
     for key in keys:
-        rows = np.flatnonzero(mine & _all([columns[n] == v for n, v in zip(names, key, strict=True)]))
+        rows = np.flatnonzero(
+            mine & np.logical_and.reduce([columns[n] == v for n, v in zip(names, key, strict=True)])
+        )
         rows = rows[np.argsort(columns["load"][rows])]
         if rows.size >= 4:
             found.append(_ramp(columns, rows, *key))
     return tuple(found)
-
-
-def _all(masks: Sequence[NDArray[np.bool_]]) -> NDArray[np.bool_]:
-    return np.logical_and.reduce(masks)
 
 
 def _ramp(

@@ -13,10 +13,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from verification.problem.array_types import Array
-from verification.study.choice.failure_criteria import SAMPLES, Criteria, Judged
-from verification.study.choice.strength import Strength
-
-__all__ = ["Chances", "Choice", "End", "choice", "sampled", "strengths_drawn"]
+from verification.study.choice.failure_criteria import SAMPLES, Criteria, Judged, Strength
 
 EVEN = 0.01  # of the smallest utilisation, unless the curves are less certain
 HALVED = 4  # at least by as much the error of interpolation falls with half the distance of points

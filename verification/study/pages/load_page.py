@@ -28,7 +28,7 @@ from verification.study.pages.study_figures import (
     sheet,
     thickness_axes,
 )
-from verification.study.pages.thickness_recommendation import rounded
+from verification.study.pages.thickness_page import rounded
 from verification.study.study_plan import Study
 from verification.study.study_table import read_columns
 from verification.study.thickness_curves import differences

@@ -105,7 +105,7 @@ def inputs_section(study: Study) -> Section:
             row(f"coating {i} on the ball", text)
             for i, text in enumerate(layers(study.ball[2] if study.ball else ()), start=1)
         ),
-        row("load", load_text(study)),
+        row("load", f"{study.load:g} N" if study.loads is None else "{:g} to {:g} N".format(*study.loads)),
         row("substrate", _solid(*study.substrate)),
         row("coating", f"E = {moduli} GPa (E1/E2 = {ratios}), nu = {study.coating_nu:g}"),
         *(row(f"{side} it", ", ".join(layers(fixed))) for side, fixed in study.fixed.items() if fixed),
@@ -153,11 +153,6 @@ def check_sections(checks: Sequence[Difference]) -> list[Section]:
         row_css=lambda d: "" if d.largest <= d.stated or d.stated != d.stated else "disagrees",
     )
     return [Section("checks", "Cross-check", [Part("", [table])])]
-
-
-def load_text(study: Study) -> str:
-    """The load of a study, or its range."""
-    return f"{study.load:g} N" if study.loads is None else f"{study.loads[0]:g} to {study.loads[1]:g} N"
 
 
 def _solid(E: float, nu: float) -> str:

@@ -133,10 +133,6 @@ def _values(curve: Curve, quantity: str) -> Array:
     return curve.stress[quantity] if quantity in curve.stress else curve.scalar[quantity]
 
 
-def _label(quantity: str) -> str:
-    return NAMES.get(quantity) or f"${QUANTITY[quantity].tex}$"
-
-
 def _scale(curve: Curve, quantity: str, units: Units) -> tuple[str, float, str]:
     """Name of the scale of a quantity, its value in the units, the unit."""
     scale = SCALARS.get(quantity, "p_h")
@@ -190,7 +186,7 @@ def _against_thickness(
                     for source, (at, value) in points.items()
                     for x, y in zip(at, value, strict=True)
                 ]
-            axes.set_ylabel(f"{_label(quantity)} [{unit}]")
+            axes.set_ylabel(f"{NAMES.get(quantity) or f'${QUANTITY[quantity].tex}$'} [{unit}]")
             beside(axes, size, f"over ${SCALE_NAMES[scale]}$")
             axes.grid(True, linewidth=0.3, color="#cccccc")
             if heading:

@@ -8,8 +8,7 @@ import study_table
 from markupsafe import escape
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from verification.study.choice.failure_criteria import Criteria, judged
-from verification.study.choice.strength import Uniform
+from verification.study.choice.failure_criteria import Criteria, Uniform, judged
 from verification.study.choice.thickness_choice import choice
 from verification.study.largest_stresses import QUANTITIES
 from verification.study.pages import study_figures, thickness_page

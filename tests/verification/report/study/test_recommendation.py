@@ -7,7 +7,7 @@ import study_table
 from verification.cases.unit_numbers import Units
 from verification.study.choice.failure_criteria import Criteria, judged
 from verification.study.choice.thickness_choice import choice
-from verification.study.pages.thickness_recommendation import answers, checked_messages, near, rounded
+from verification.study.pages.thickness_page import answers, checked_messages, near, rounded
 from verification.study.study_table import read_columns
 from verification.study.thickness_curves import curves
 
