@@ -18,7 +18,6 @@ O. C. Zienkiewicz and R. L. Taylor, The Finite Element Method for Solid and Stru
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 from typing import Any
 
 import numpy as np
@@ -184,20 +183,20 @@ class Discretisation:
         basis = Basis(self.triangulation, ELEMENTS[self.order](), intorder=2 * self.order)
         r = np.asarray(basis.global_coordinates())[0]
         root = np.sqrt(r * basis.dx)
-        s = np.empty((3, len(r), basis.Nbfun, r.shape[1]))
+        s = np.empty((len(r), basis.Nbfun, 3, r.shape[1]))
         for i, (phi,) in enumerate(basis.basis):
-            s[:, :, i] = np.stack([phi.grad[0], phi.grad[1], phi / r]) * root
+            s[:, i] = np.stack([phi.grad[0] * root, phi.grad[1] * root, phi / r * root], axis=1)
 
         A = np.stack(strain_operator(harmonic))
         D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])
         coupling = np.einsum("asf,lst,btg->lfgab", A, D, A, optimize=True)[self.mesh.layer]
-        fields = A.shape[2]
-        K = np.zeros((len(r), fields, basis.Nbfun, fields, basis.Nbfun))
-        for a, b in product(range(3), repeat=2):
-            integral = s[a] @ s[b].transpose(0, 2, 1)
-            for f, g in product(range(fields), repeat=2):
-                if np.any(coupling[:, f, g, a, b]):
-                    K[:, f, :, g] += coupling[:, f, g, a, b, None, None] * integral
+        fields, rows = A.shape[2], s.reshape(*s.shape[:2], -1)
+        K = np.empty((len(r), fields, basis.Nbfun, fields, basis.Nbfun))
+        for f in range(fields):
+            for g in range(f + 1):
+                columns = (coupling[:, None, f, g] @ s).reshape(rows.shape)
+                K[:, f, :, g] = block = rows @ columns.transpose(0, 2, 1)
+                K[:, g, :, f] = block.transpose(0, 2, 1)
         field = basis.N * np.arange(fields, dtype=np.int32)[:, None]
         numbers = field + np.asarray(basis.element_dofs, dtype=np.int32).T[:, None]
         size = fields * basis.Nbfun
@@ -243,9 +242,9 @@ class Skeleton:
     extension: np.ndarray
 
     def extended(self, u: np.ndarray) -> np.ndarray:
-        """The field vectors ``u`` (n, columns) with their values inside the triangles."""
+        """The field vectors ``u``, (n,) or (n, columns), with their values inside the triangles."""
         u = u.copy()
-        u[self.inner] = self.extension @ u[self.outer]
+        u[self.inner] = np.einsum("mio,mo...->mi...", self.extension, u[self.outer], optimize=True)
         return u
 
 

@@ -14,9 +14,7 @@ from .location import LocatedPoints
 __all__ = ["REACH", "ComparisonPoints", "Pair", "Uncached", "largest_around", "samples"]
 
 # Shares of the largest difference in rings of triangles, or cells of a line, by their distance from a point.
-REACH = (1.0, 1.0, 1.0, 0.7, 0.5, 0.35, 0.25)
-# Of sizes of triangles, below which their local ratio is that of two irregular meshes.
-_LEAST_RATIO = 1.08
+REACH = (1.0, 1.0, 0.5)
 # corners, middles and centre of the reference triangle: the hoop strain is worst on the axis itself
 _SAMPLES = np.array([[0, 1, 0, 1 / 2, 1 / 2, 0, 1 / 3], [0, 0, 1, 0, 1 / 2, 1 / 2, 1 / 3]])
 # Moved this far towards the centre, those of triangles in depth: none lies on a plane with a formula of its
@@ -42,18 +40,10 @@ class ComparisonPoints(Uncached):
     final: Discretisation
     companion: Discretisation
 
-    @cached_property
-    def _sizes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Size of the triangles around each triangle of either mesh: roots of their areas."""
-        return _triangle_sizes(self.final), _triangle_sizes(self.companion)
-
-    def ratio(self, points: Pair) -> np.ndarray:
-        """Size of the companion's triangles over that of the final mesh at ``points``, (n,)."""
-        final, companion = (size[at.cells] for size, at in zip(self._sizes, points, strict=True))
-        return np.maximum(companion / final, _LEAST_RATIO)
-
     def _on_both(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> Pair:
-        return self.final.locator.points(r, z, layer), self.companion.locator.points(r, z, layer)
+        # at the same r/a: next to the edge a displaced one would hide what the triangles miss
+        stretch = self.companion.mesh.contact_radius / self.final.mesh.contact_radius
+        return self.final.locator.points(r, z, layer), self.companion.locator.points(stretch * r, z, layer)
 
     @cached_property
     def triangles(self) -> Pair:
@@ -84,17 +74,6 @@ class ComparisonPoints(Uncached):
             points = self._on_both(r, np.full(r.shape, depth), np.full(r.shape, layer))
             planes[depth, layer] = vertices, points
         return planes
-
-
-def _triangle_sizes(d: Discretisation) -> np.ndarray:
-    """Mean size of the triangles within two rings of each triangle, either side of interfaces."""
-    t = d.triangulation.t
-    (r0, z0), (r1, z1), (r2, z2) = (d.mesh.points[:, corner] for corner in t)
-    size = np.sqrt(0.5 * np.abs((r1 - r0) * (z2 - z0) - (r2 - r0) * (z1 - z0)))
-    for _ in range(2):  # one ring holds too few triangles on the axis
-        around = np.bincount(t.ravel(), np.tile(size, 3)) / np.bincount(t.ravel())
-        size = around[t].mean(axis=0)
-    return size
 
 
 def samples(vertices: np.ndarray) -> np.ndarray:

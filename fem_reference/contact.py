@@ -30,11 +30,12 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
+from scipy.interpolate import PPoly
 from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation
 from .coupling import Coupling
-from .linear_system import Constrained, Factor, constrained_solve
+from .linear_system import Constrained, constrained_solve
 from .mesh import EDGE_SIZE, MeridianMesh
 from .recovery import EDGE_SERIES, edge_distances
 from .scaling import LayeredSolid
@@ -59,21 +60,17 @@ class Multiplier:
     def vertices(self) -> np.ndarray:
         return self.nodes[:: self.degree]
 
+    @cached_property
+    def _cells(self) -> PPoly:
+        knots = np.arange(self.degree + 1)
+        values = self.values[np.arange(self.vertices.size - 1) * self.degree + knots[:, None]]
+        width = np.diff(self.vertices) / self.degree
+        return PPoly(np.linalg.solve(np.vander(knots), values) / width ** knots[::-1, None], self.vertices)
+
     def __call__(self, r: np.ndarray) -> np.ndarray:
         """Value at the radii ``r``, zero outside; any shape."""
         r = np.asarray(r, dtype=float)
-        a = self.vertices[-1]
-        inside = r <= a
-        cell = np.clip(np.searchsorted(self.vertices, r, side="right") - 1, 0, self.vertices.size - 2)
-        left, right = self.vertices[cell], self.vertices[cell + 1]
-        t = (np.clip(r, 0, a) - left) / (right - left)
-        knots = np.arange(self.degree + 1) / self.degree
-        total = np.zeros(r.shape)
-        for i, knot in enumerate(knots):
-            others = np.delete(knots, i)
-            shape = np.prod([(t - other) / (knot - other) for other in others], axis=0)
-            total += shape * self.values[cell * self.degree + i]
-        return np.where(inside, total, 0.0)
+        return np.where(r <= self.vertices[-1], self._cells(r), 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +98,6 @@ class FixedRadiusContact:
     residual   : largest out-of-balance nodal force over the load
     ball       : None where it is rigid
     curvature  : of the gap, as in `undeformed_gap`
-    factor     : of the stiffness matrix, for contacts of nearly this radius on the same triangles
     """
 
     discretisation: Discretisation
@@ -115,7 +111,6 @@ class FixedRadiusContact:
     residual: float
     ball: Ball | None = None
     curvature: float = 0.0
-    factor: Factor | None = None
 
     def radius_at(self, load: float) -> float:
         """Contact radius at a ``load`` near that of this contact; at most a factor of two away."""
@@ -136,13 +131,11 @@ def solve_at_radius(
     discretisation: Discretisation,
     ball: tuple[LayeredSolid, Coupling] | None = None,
     curvature: float = 0.0,
-    factor: Factor | None = None,
 ) -> FixedRadiusContact:
     """Solve the contact whose edge is the mesh's contact radius.
 
     ball : layers of an elastic ball, and its discretisation coupled to that of the flat
     curvature : of the gap, as in `undeformed_gap`
-    factor : of the contact of a nearby radius on the same triangles, or None
     """
     d, contact = discretisation, discretisation.contact
     a = d.mesh.contact_radius
@@ -152,9 +145,9 @@ def solve_at_radius(
     shape = np.stack([np.ones_like(nodes), -undeformed_gap(nodes, curvature), np.zeros_like(nodes)], axis=1)
     far = np.array([0.0, 0.0, 1.0])
     if ball is None:
-        u, reaction, solved = _under_rigid(solid, d, shape, far, factor)
+        u, reaction, solved = _under_rigid(solid, d, shape, far)
     else:
-        u, of_ball, reaction, solved = ball[1].solve((solid, ball[0]), shape, far, factor)
+        u, of_ball, reaction, solved = ball[1].solve((solid, ball[0]), shape, far)
 
     mass = d.surface_mass(edges)[contact][:, contact]
     even = _even_at_the_axis(nodes, d.order)
@@ -182,7 +175,6 @@ def solve_at_radius(
         residual=float(2 * np.pi * np.abs(solved.residual @ combine).max() / abs(W)),
         ball=None if ball is None else Ball(*ball, of_ball @ combine),
         curvature=curvature,
-        factor=solved.factor,
     )
 
 
@@ -196,7 +188,7 @@ def edge_coefficients(pressure: Multiplier, mesh: MeridianMesh) -> tuple[float, 
 
 
 def _under_rigid(
-    solid: LayeredSolid, d: Discretisation, shape: np.ndarray, far: np.ndarray, factor: Factor | None
+    solid: LayeredSolid, d: Discretisation, shape: np.ndarray, far: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, Constrained]:
     """Displacement with u_z = ``shape`` (nodes, columns) on the contact; ``far`` as in ``Coupling.solve``.
 
@@ -211,7 +203,7 @@ def _under_rigid(
     given[d.axis] = 0.0
     K = d.skeleton(solid.materials, 0)
     fixed = np.concatenate([d.axis, d.outer, N + d.outer, N + d.contact, K.inner.ravel()])
-    solved = constrained_solve(K.matrix, given, fixed, factor=factor)
+    solved = constrained_solve(K.matrix, given, fixed)
     return K.extended(solved.u), solved.force[N + d.contact], solved
 
 

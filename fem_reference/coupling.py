@@ -15,7 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from .axisymmetric import Discretisation
-from .linear_system import Constrained, Factor, constrained_solve
+from .linear_system import Constrained, constrained_solve
 from .scaling import LayeredSolid
 
 __all__ = ["Coupling"]
@@ -48,12 +48,12 @@ class Coupling:
         return numbers
 
     def solve(
-        self, solids: Solids, jump: np.ndarray, far: np.ndarray, factor: Factor | None = None
+        self, solids: Solids, jump: np.ndarray, far: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, Constrained]:
         """Displacements of flat and ball, several cases in columns.
 
         jump : of u_z at the contact nodes (nodes, columns).  far : load whose far field is prescribed,
-        (columns,).  factor : as in ``constrained_solve``.
+        (columns,).
         Returns the field vectors (2 N, columns) of flat and ball, the nodal forces (nodes, columns) on the
         flat, and how they were found.
         """
@@ -78,7 +78,7 @@ class Coupling:
         load = -(T.T @ (K_ball.matrix @ apart))
         K = T.T @ K_ball.matrix @ T
         K_flat.matrix.resize(n, n)
-        solved = constrained_solve(K + K_flat.matrix, given, np.concatenate(fixed), load, factor)
+        solved = constrained_solve(K + K_flat.matrix, given, np.concatenate(fixed), load)
         of_flat = solved.u[:n_flat]
         of_ball = T @ solved.u + apart
         return K_flat.extended(of_flat), K_ball.extended(of_ball), on_flat @ of_flat, solved

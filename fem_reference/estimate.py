@@ -5,14 +5,13 @@ By hand: scikit-fem has no estimate of the error of stresses at a point.
 The difference of two solutions crosses zero along lines where neither is exact, so it is not used point by
 point: the estimate at a vertex is the largest difference in the rings of triangles around it, further rings
 counting by the shares of ``REACH``, and between vertices it is linear. Triangles grow with the distance from
-the contact edge and with depth, and so does the neighbourhood. The largest difference is multiplied by
-Roache's factor for two meshes (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9),
+the contact edge and with depth, and so does the neighbourhood. For stresses all of the largest difference
+counts, times 1.25: a thin coating, an interface, the axis keep the mesher from the ratio of sizes that it was
+asked for. For pressure and scalars Roache's estimate (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9)
 
-    U = SAFETY |difference| / (ratio^order - 1),
+    U = SAFETY |difference| / (ratio^order - 1)
 
-with the order of the elements and the ratio of the companion's triangles to those of the mesh next to the
-point: a thin coating, an interface, the axis keep the mesher from the ratio that it was asked for. On the
-surface and on interfaces the estimate is at least that of the triangles beside them.
+is used. The solutions are compared at the same r/a.
 
 Both solutions miss the given load within its tolerance, by amounts that are known. Changes between meshes are
 therefore taken at the given load: W ~ a^growth, d delta = dW / stiffness.
@@ -51,12 +50,9 @@ _ASYMPTOTIC_SIZE = 0.18
 # The displacement of the field is part of the estimate within this distance of the edge over the radius.
 _STRIP = 0.3
 # At some places the final mesh is the worse one: its error is all the difference, or somewhat more.
-_LEAST_FACTOR = 1.25
+_OF_STRESS = 1.25
 # zz, rz, tz: one value on both sides of an interface, in error by that of either side
-_TRACTIONS, _IN_PLANE = [2, 3, 5], [0, 1, 4]
-# On a plane the estimate of the triangles beside it counts up to this factor: of nearly incompressible layers
-# theirs is that of the mean stress, which the plane does not have.
-_BESIDE = 3.0
+_TRACTIONS = [2, 3, 5]
 
 
 @dataclass(frozen=True)
@@ -73,6 +69,7 @@ class Uncertainty:
 class PressureEstimate:
     """Estimated error of the pressure as a function of the radius.
 
+    stretch : contact radius of the companion over that of the final mesh; they are compared at the same r/a
     factor : multiplies the difference from the companion
     radius_error : uncertainty of the contact radius; the change of p when the edge shifts by it is added,
         which covers the ring between the two contact edges and the infinite slope of p beside it
@@ -82,6 +79,7 @@ class PressureEstimate:
     pressure: Callable[[np.ndarray], np.ndarray]
     companion: Callable[[np.ndarray], np.ndarray]
     vertices: np.ndarray
+    stretch: float
     factor: float
     radius_error: float
     everywhere: float
@@ -89,7 +87,8 @@ class PressureEstimate:
     @cached_property
     def _at_vertices(self) -> np.ndarray:
         r = samples(self.vertices)
-        return largest_around(self.factor * np.abs(self.pressure(r) - self.companion(r)), self.vertices.size)
+        difference = self.pressure(r) - self.companion(self.stretch * r)
+        return largest_around(self.factor * np.abs(difference), self.vertices.size)
 
     def __call__(self, r: np.ndarray) -> np.ndarray:
         p = self.pressure(r)
@@ -103,7 +102,7 @@ class PressureEstimate:
 class StressEstimate(Uncached):
     """Estimated error of the stress of one harmonic as a function of position.
 
-    safety : on the difference from the companion over ratio^order - 1
+    factor, moved : multiply the largest differences of stress and displacement from the companion
     radius_error : uncertainty of the contact radius
     relative : added in proportion to the stress, for errors of the load
     everywhere : added at every point, for the truncation of the half-space
@@ -113,7 +112,8 @@ class StressEstimate(Uncached):
     field: HarmonicField
     companion: HarmonicField
     points: ComparisonPoints
-    safety: float
+    factor: float
+    moved: float
     radius_error: float
     relative: float
     everywhere: float
@@ -124,14 +124,10 @@ class StressEstimate(Uncached):
         return self._between(self._corners[6:], at) + self.far + self.relative * np.abs(u)
 
     def _error(self, points: Pair, layer: int | None = None) -> np.ndarray:
-        """Estimate (6, n) at points of comparison, before the largest in a neighbourhood is taken.
+        """Estimate (6, n) at points of comparison before the largest around is taken, then of u; (9, n).
 
         layer : of points on a plane z = const, whose stresses follow from strains and tractions of the plane
         """
-        return self._compared(points, layer)[:6]
-
-    def _compared(self, points: Pair, layer: int | None = None) -> np.ndarray:
-        """``_error``, then that of the displacement, whose order is higher by one; (9, n)."""
         (u, final), (other, companion) = (
             f(at) for f, at in zip((self.field, self.companion), points, strict=True)
         )
@@ -141,15 +137,8 @@ class StressEstimate(Uncached):
             nu = self.field.materials[layer][1]
             shared = nu / (1 - nu) * difference[2]
             difference[:2] = np.abs(difference[:2] - shared) + np.abs(shared)
-        d = self.field.discretisation
-        # In the triangles at the axis, where u_r / r is a derivative too, one order less is observed.
-        on_axis = (d.mesh.points[0, d.triangulation.t] == 0).any(axis=0)[points[0].cells]
-        ratio, order = self.points.ratio(points), d.order - on_axis
-        factor = np.maximum(self.safety / (ratio**order - 1), _LEAST_FACTOR)
-        error = factor * np.abs(difference) + self.relative * np.abs(final)
-        # that of all triangles moves a point, not that of those next to it
-        moved = self.safety / (COMPANION ** (d.order + 1) - 1) * np.abs(u - other)
-        return np.concatenate([error, moved])
+        error = self.factor * np.abs(difference) + self.relative * np.abs(final)
+        return np.concatenate([error, self.moved * np.abs(u - other)])
 
     @cached_property
     def _vertices(self) -> np.ndarray:
@@ -157,7 +146,7 @@ class StressEstimate(Uncached):
         d = self.field.discretisation
         points = d.mesh.points.shape[1]
         vertices = d.triangulation.t + d.mesh.layer * points
-        worst = self._compared(self.points.triangles).reshape(9, -1, vertices.shape[1]).max(axis=1)
+        worst = self._error(self.points.triangles).reshape(9, -1, vertices.shape[1]).max(axis=1)
         estimate = np.zeros((9, (int(d.mesh.layer.max()) + 1) * points))
         for share in np.divide(REACH, (1.0, *REACH[:-1])):
             for corner in vertices:
@@ -174,34 +163,14 @@ class StressEstimate(Uncached):
 
     @cached_property
     def _planes(self) -> dict[tuple[float, int], tuple[np.ndarray, np.ndarray]]:
-        """Vertices and estimates on the surface and on both sides of each interface, by (depth, layer).
-
-        Two solutions may agree on a plane without either being exact: the estimate is at least that of the
-        triangles of its side, of the tractions of an interface the geometric mean of both sides. On the
-        surface the tractions are given, and a series replaces the triangles next to the edge.
-        """
+        """Vertices and estimates on the surface and on both sides of each interface, by (depth, layer)."""
         found = {
-            key: (vertices, largest_around(self._error(points, key[1]), vertices.size))
+            key: (vertices, largest_around(self._error(points, key[1])[:6], vertices.size))
             for key, (vertices, points) in self.points.planes.items()
         }
-        mesh = self.field.discretisation.mesh
-
-        def beside(depth: float, layers: slice, count: int) -> np.ndarray:
-            here = np.flatnonzero(mesh.points[1] == depth)
-            return self._vertices[:6, layers, here[np.argsort(mesh.points[0, here])][:count]]
-
-        vertices, surface = found[0.0, 0]
-        clear = np.abs(vertices - mesh.contact_radius) > _STRIP * mesh.contact_radius
-        least = np.where(clear, beside(0.0, slice(0, 1), vertices.size)[:, 0], 0.0)
-        surface[_IN_PLANE] = np.maximum(surface, np.minimum(least, _BESIDE * surface))[_IN_PLANE]
-        for upper, depth in enumerate(mesh.depths):
-            sides = [found[float(depth), layer][1] for layer in (upper, upper + 1)]
-            triangles = beside(depth, slice(upper, upper + 2), sides[0].shape[1])
-            triangles[_TRACTIONS] = np.sqrt(triangles[_TRACTIONS].prod(axis=1, keepdims=True))
-            tractions = np.maximum(sides[0][_TRACTIONS], sides[1][_TRACTIONS])
-            for number, side in enumerate(sides):
-                side[_TRACTIONS] = tractions
-                np.maximum(side, np.minimum(triangles[:, number], _BESIDE * side), out=side)
+        for upper, depth in enumerate(self.field.discretisation.mesh.depths):
+            above, below = (found[float(depth), layer][1] for layer in (upper, upper + 1))
+            above[_TRACTIONS] = below[_TRACTIONS] = np.maximum(above[_TRACTIONS], below[_TRACTIONS])
         return found
 
     def __call__(self, at: LocatedPoints) -> np.ndarray:
@@ -336,7 +305,13 @@ def estimates(
     radius_error = size_radius + SAFETY * edge + far_radius + balance
     everywhere = far_pressure + load_residual / 3 * largest
     pressure = PressureEstimate(
-        state.pressure, companion.pressure, d.contact_vertices, pointwise, radius_error, everywhere
+        state.pressure,
+        companion.pressure,
+        d.contact_vertices,
+        companion.mesh.contact_radius / a,
+        pointwise,
+        radius_error,
+        everywhere,
     )
     size_peak = float(pressure(np.array([at]))[0]) - everywhere
     rows: tuple[tuple[str, str, float], ...] = (
@@ -359,7 +334,8 @@ def estimates(
         state.normal,
         companion.normal,
         points,
-        SAFETY * _coarseness(size) ** 2,
+        _OF_STRESS * _coarseness(size) ** 2,
+        SAFETY / (COMPANION ** (d.order + 1) - 1) * _coarseness(size) ** 2,
         radius_error,
         relative,
         float(far_stress + pollution),

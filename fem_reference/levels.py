@@ -5,15 +5,15 @@ it closely and is the reference of the error estimate. The final mesh gives the 
 contact radius of every level.
 """
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
 from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact, solve_at_radius
 from .coupling import Coupling
-from .linear_system import Factor
-from .mesh import EDGE_SIZE, Grading, MeridianMesh, Meshes, meridian_mesh
-from .radius_search import find_contact_radius
+from .mesh import EDGE_SIZE, Grading, MeridianMesh, meridian_mesh
 from .scaling import LayeredSolid, first_radius
 
 __all__ = [
@@ -22,24 +22,20 @@ __all__ = [
     "NotConverged",
     "companion_grading",
     "final_grading",
+    "find_contact_radius",
     "mesh_at",
     "solve_levels",
 ]
 
 # One row of triangles in a coating: the radius is good to 1e-4, from where the companion takes two solves.
 _COARSE = Grading.of(0.5, rows=1.0)
+_OF_COMPANION = 1e-5  # tolerance of its load, which the estimate takes into account: one solve instead of two
+_STRETCH = 1.3  # largest factor by which radii are stretched before a new mesh is generated
 COMPANION = 1.4  # size of the companion over that of the final mesh
 
 
 class NotConverged(Exception):
     """The solver did not reach its tolerance; the message states what was reached and what to try."""
-
-
-@dataclass(frozen=True)
-class _Level:
-    name: str
-    grading: Grading
-    tolerance: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +51,8 @@ class ContactLevels:
 
 
 Solids = tuple[LayeredSolid, ...]
+# of the flat, then of an elastic ball, with the same vertices on the surface
+Meshes = tuple[MeridianMesh, ...]
 
 
 def solve_levels(
@@ -75,33 +73,70 @@ def solve_levels(
     curvature : of the gap, as in `contact.undeformed_gap`
     Raises NotConverged when the load is not reached on one of the levels.
     """
-    levels = [_Level("coarse", _COARSE, 1e-3)]
+    levels = [("coarse", _COARSE, 1e-3)]
     if with_companion:
-        levels.append(_Level("companion", companion_grading(size), tolerance))
-    levels.append(_Level("final", final_grading(size), tolerance))
+        levels.append(("companion", companion_grading(size), max(tolerance, _OF_COMPANION)))
+    levels.append(("final", final_grading(size), tolerance))
     a = first_radius(solids, load)
     history: list[tuple[str, float, float]] = []
     found: dict[str, FixedRadiusContact] = {}
-    for level in levels:
-        search = find_contact_radius(
+    for name, grading, allowed in levels:
+        contact, solves = find_contact_radius(
             load,
             start=a,
-            tolerance=level.tolerance,
+            tolerance=allowed,
             max_iterations=max_iterations,
-            mesh_at=partial(_meshes_at, solids, level.grading),
+            meshes_at=partial(_meshes_at, solids, grading),
             solve_on=partial(_solve_on, solids, order, curvature),
         )
-        history += [(level.name, *entry) for entry in search.history]
-        if not search.converged:
-            a, W = search.history[-1]
+        history += [(name, *solve) for solve in solves]
+        a, W = solves[-1]
+        if not _balanced(W, load, allowed):
             raise NotConverged(
-                f"the contact radius did not converge on the {level.name} mesh: after "
-                f"{len(search.history)} solves, at {a:.4g} a_h, the load is {W / load:.6g} of the required "
-                "one; raise max_iterations, or check the thicknesses and the ratio of the moduli"
+                f"the contact radius did not converge on the {name} mesh: after {len(solves)} solves, at "
+                f"{a:.4g} a_h, the load is {W / load:.6g} of the required one; raise max_iterations, or "
+                "check the thicknesses and the ratio of the moduli"
             )
-        found[level.name] = search.contact
-        a = search.contact.radius_at(load)
+        found[name], a = contact, contact.radius_at(load)
     return ContactLevels(found["final"], found.get("companion"), tuple(history))
+
+
+def find_contact_radius(
+    load: float,
+    *,
+    start: float,
+    tolerance: float,
+    max_iterations: int,
+    meshes_at: Callable[[float], Meshes],
+    solve_on: Callable[[Meshes], FixedRadiusContact],
+) -> tuple[FixedRadiusContact, list[tuple[float, float]]]:
+    """Find a with |log W(a)/load| <= ``tolerance`` from ``start``.
+
+    The load of a rigid paraboloid rises with the contact radius, W ~ a^3 on a homogeneous solid, so log W is
+    nearly linear in log a and Newton's method with the slope d log W / d log a, which every solution gives to
+    a hundredth (``contact``), converges in a few steps. Small steps stretch the meshes, large ones make new
+    ones.
+
+    meshes_at : contact radius -> meshes with a vertex there.  solve_on : meshes -> contact with their radius
+    Returns the last contact and (contact radius, load) of every solve; after ``max_iterations``, or where the
+    load is not a positive number, the tolerance is not reached.
+    """
+    a, meshes = start, meshes_at(start)
+    solves: list[tuple[float, float]] = []
+    while True:
+        factor = a / meshes[0].contact_radius
+        contact = solve_on(tuple(mesh.stretched(factor) for mesh in meshes))
+        solves.append((a, contact.load))
+        positive = contact.load > 0 and math.isfinite(contact.load)
+        if not positive or _balanced(contact.load, load, tolerance) or len(solves) >= max_iterations:
+            return contact, solves
+        a = contact.radius_at(load)
+        if not 1 / _STRETCH < a / meshes[0].contact_radius < _STRETCH:
+            meshes = meshes_at(a)
+
+
+def _balanced(W: float, load: float, tolerance: float) -> bool:
+    return W > 0 and abs(math.log(load / W)) <= tolerance
 
 
 def final_grading(size: float) -> Grading:
@@ -140,12 +175,10 @@ def _meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> Meshe
         )
         for thicknesses in dict.fromkeys(stacks)
     }
-    return Meshes(tuple(made[solid.thicknesses] for solid in solids))
+    return tuple(made[solid.thicknesses] for solid in solids)
 
 
-def _solve_on(
-    solids: Solids, order: int, curvature: float, meshes: Meshes, factor: Factor | None
-) -> FixedRadiusContact:
-    flat, *others = (Discretisation(mesh, order) for mesh in meshes.of)
+def _solve_on(solids: Solids, order: int, curvature: float, meshes: Meshes) -> FixedRadiusContact:
+    flat, *others = (Discretisation(mesh, order) for mesh in meshes)
     ball = (solids[1], Coupling(flat, others[0])) if others else None
-    return solve_at_radius(solids[0], flat, ball, curvature, factor)
+    return solve_at_radius(solids[0], flat, ball, curvature)

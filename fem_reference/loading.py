@@ -54,8 +54,8 @@ def solve_traction(
     K = d.skeleton(solid.materials, harmonic)
     fixed = [field * N + d.outer for field, _ in fixed_fields] + [field * N + d.axis for field in on_axis]
     fixed.append(K.inner.ravel())
-    solved = constrained_solve(K.matrix, given[:, None], np.concatenate(fixed), load[:, None])
-    return K.extended(solved.u)[:, 0]
+    solved = constrained_solve(K.matrix, given, np.concatenate(fixed), load)
+    return K.extended(solved.u)
 
 
 def _inside(d: Discretisation) -> np.ndarray:

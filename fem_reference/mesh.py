@@ -20,7 +20,7 @@ import numpy as np
 
 from .gmsh_session import session
 
-__all__ = ["EDGE_SIZE", "Grading", "MeridianMesh", "Meshes", "meridian_mesh"]
+__all__ = ["EDGE_SIZE", "Grading", "MeridianMesh", "meridian_mesh"]
 
 EDGE_SIZE = 1e-7  # smallest triangle, at the contact edge, over the contact radius
 # Size of a triangle in the fan over edge_rate: this power of its distance from the edge. What the innermost
@@ -110,22 +110,6 @@ class MeridianMesh:
         """Stretched-plane coordinates (xi, zeta) of the points (r, z); shape (2,) + points."""
         offset = (r - self.contact_radius) / (self.stretch * self.length)
         return np.stack([np.arcsinh(offset), np.arcsinh(z / self.length)])
-
-
-@dataclass(frozen=True, eq=False)
-class Meshes:
-    """Meridian meshes of the bodies in contact, the flat first, with the same vertices on the surface."""
-
-    of: tuple[MeridianMesh, ...]
-
-    @property
-    def contact_radius(self) -> float:
-        return self.of[0].contact_radius
-
-    def stretched(self, factor: float) -> "Meshes":
-        """The meshes with all radii multiplied by ``factor``; bodies of one mesh keep one."""
-        new = {id(mesh): mesh.stretched(factor) for mesh in self.of}
-        return Meshes(tuple(new[id(mesh)] for mesh in self.of))
 
 
 def meridian_mesh(

@@ -16,8 +16,8 @@ import numpy as np
 
 from .axisymmetric import Discretisation
 from .harmonic_compliance import HarmonicCompliance, harmonic_compliance
+from .location import SolidPoints, solid_points
 from .mesh import Grading, MeridianMesh, meridian_mesh
-from .points import SolidPoints, solid_points
 from .recovery import HarmonicField
 from .scaling import LayeredSolid, Units
 from .solution import cartesian, tensor

@@ -8,7 +8,7 @@ import numpy as np
 
 from .contact import peak
 from .estimate import Estimates, Uncertainty
-from .points import SolidPoints, solid_points
+from .location import SolidPoints, solid_points
 from .scaling import Units
 from .state import ElasticState
 from .validation import check_friction

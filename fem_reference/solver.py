@@ -36,14 +36,14 @@ Coatings = tuple[tuple[float, float, float], ...]
 Ball = tuple[float, float, Coatings]
 
 # Triangle size over its distance from the contact edge.
-QUALITY = {"fast": 0.27, "default": 0.14, "fine": 0.1}
+QUALITY = {"fast": 0.27, "default": 0.16, "fine": 0.1}
 # The same where a layer is stiffer than the next below by more than this factor: it bends like a plate, whose
 # stresses exceed the pressure. Under a compliant layer errors are below those of bare steel at the same size.
 CONTRASTS = {
-    10.0: {"fast": 0.17, "default": 0.1, "fine": 0.1},
-    100.0: {"fast": 0.15, "default": 0.085, "fine": 0.085},
+    10.0: {"fast": 0.17, "default": 0.12, "fine": 0.1},
+    100.0: {"fast": 0.15, "default": 0.1, "fine": 0.085},
 }
-LOAD_TOLERANCE = 1e-8
+LOAD_TOLERANCE = 3e-8
 
 
 def solve(

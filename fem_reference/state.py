@@ -65,10 +65,10 @@ class ElasticState:
     def truncation(self, harmonic: int) -> tuple[float, float, float]:
         """Changes of displacement, stress, curvature due to the far field prescribed on the outer boundary.
 
-        What the far field leaves out falls with a power of the distance, at least the first, and is set to
-        zero on the boundary: so at half the distance at least as much is found as was left out there. Inside
-        it is smooth: its strain is that over the distance, the curvature of u_z twice that over the distance
-        squared.
+        What the far field leaves out, the share of the coatings, falls with at least the square of the
+        distance and is set to zero on the boundary: at half the distance three times as much is found as was
+        left out there. Inside it is smooth: its strain is that over the distance, the curvature of u_z twice
+        that over the distance squared.
         """
         d, field = self.discretisation, self.tangential if harmonic else self.normal
         assert field is not None
@@ -80,7 +80,7 @@ class ElasticState:
         else:
             U, V, Z = load * self.solid.far_sliding(*d.locations[:, halfway])
             far = np.stack([U + V, V, Z])
-        missing = float(np.abs(field.fields.reshape(-1, d.N)[:, halfway] - far).max())
+        missing = float(np.abs(field.fields.reshape(-1, d.N)[:, halfway] - far).max()) / 3
         stiffest = max(E / (1 - 2 * nu) for E, nu in self.solid.materials)
         return missing, stiffest * missing / self.mesh.far, 2 * missing / self.mesh.far**2
 

@@ -17,6 +17,7 @@ from semianalytic.arrays import namespace, to_numpy
 from semianalytic.edge_shape import Shape, Step
 from semianalytic.inputs import Body
 from semianalytic.level import Level, LevelProblem
+from semianalytic.smooth_edge import EdgePatches
 
 __all__ = ["corrected", "unresolved"]
 
@@ -30,6 +31,7 @@ MISFIT, COARSE_MISFIT = (
     2.0,
 )  # patches by which the pressures near a smooth edge may miss f; in the first rounds
 LOST = 0.2  # of the load, the most that constant patches miss of a pressure with a smooth edge
+INNER = 3e-3  # of the peak, that f may miss inside: ellipses 3e-5, a kink of the indenter's slope 0.1
 OUTER_TERMS = 6  # polynomials of a pressure that is fitted near the edge alone
 NARROW = 5  # patches between centre and edge, below which the edge is not resolved
 FEW, MOST = 3, 60  # polynomials
@@ -105,7 +107,17 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
     edge = smooth_edge.edge_patches(shape, p, grid, problem.window)
     if not edge.misfit < MISFIT or min(shape.axes) < NARROW * grid.d:
         return None
+    either = problem.indenter.round or shape.outside
+    if not either and _missed_inside(shape, edge, p, x, y) > INNER * p.max():
+        return None
     return replace(level, shape=shape, edge=edge, convolutions=convolutions)
+
+
+def _missed_inside(shape: Shape, edge: EdgePatches, p: Array, x: Array, y: Array) -> float:
+    """Largest pressure [Pa] by which the patches away from the edge miss f."""
+    rest = np.where(p > 0, p - shape.pressure(x, y), 0.0)
+    rest[edge.i, edge.j] = 0.0
+    return float(np.abs(rest).max())
 
 
 def _start(problem: LevelProblem, p: Array) -> Shape | None:

@@ -32,8 +32,8 @@ EVEN = (0, 2, 4, 6)  # even in x and in y,
 FULL = (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6)  # any
 DAMPING = 0.8  # share of the first step of a fit
 FADED = (
-    0.3,
-    0.65,
+    0.15,
+    0.4,
 )  # t over which a pressure fitted near the edge alone fades towards the inside; so does its fit
 BLUNT = 0.7  # patches from the edge, nearer than which the column of the edge, infinite there, is constant
 SLACK = 0.15  # patches by which the edge may pass the centre of a loaded or of an unloaded patch

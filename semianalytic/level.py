@@ -158,9 +158,10 @@ class Level:
         """
         if self.shape is None or self.edge is None:
             return None
-        x = self.grid.x
-        rest = self.found.pressure - self.shape.pressure(x[:, None], x[None, :])
-        rest[self.edge.i, self.edge.j] *= 1 - self.edge.share
+        x, p, edge = self.grid.x, self.found.pressure, self.edge
+        rest = p - self.shape.pressure(x[:, None], x[None, :])
+        # a shape fitted near the edge alone fades where patches and parts may still share a patch
+        rest[edge.i, edge.j] += edge.share * (edge.centre - p[edge.i, edge.j])
         rest[self.found.pressure <= 0] = 0.0
         return rest if np.abs(rest).max() > RIPPLE * self.found.pressure.max() else None
 

@@ -16,6 +16,7 @@ __all__ = ["WIDER", "Uncertainty", "change", "is_met", "of_contact", "other_conv
 
 WIDER = 1.25  # the box that tests the domain over the box in use
 SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge
+OUTSIDE = 3.0  # times as much where the shape is fitted near the edge alone
 UNRESOLVED = 0.03  # patches by which the edge of a film thinner than two of them may be wrong
 # over the accuracy asked, of the change of the pressure at the same x/a; the part that is left of the change
 # before: it was seen to fall 2.4 to 3.4 times from one grid to the next
@@ -101,7 +102,8 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
     edge = last.staircase
     if last.shape and unresolved(body, last.grid.d):
         edge = max(edge, UNRESOLVED * last.grid.d)
-    factor, share = SMOOTH if last.shape else (safety(last.grid.n / levels[-2].grid.n), PATCHES)
+    smooth = np.multiply(SMOOTH, OUTSIDE if last.shape and last.shape.outside else 1.0)
+    factor, share = smooth if last.shape else (safety(last.grid.n / levels[-2].grid.n), PATCHES)
     return Uncertainty.from_levels(fine, middle, coarse, variations, factor=factor, share=share, edge=edge)
 
 

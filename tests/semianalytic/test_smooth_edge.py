@@ -104,20 +104,29 @@ def test_edge_patches_of_an_ellipse_carry_its_load():
 
 
 @pytest.mark.parametrize(
-    ("ratio", "degrees", "patches"),
-    [(1.5, 70, 97), (2, 25, 84), (3, 0, 129), pytest.param(5, 30, 257, marks=pytest.mark.slow)],
+    ("ratio", "degrees", "patches", "smooth"),
+    [
+        (1.5, 70, 97, True),
+        (2, 25, 84, True),
+        (3, 0, 129, True),
+        pytest.param(4, 30, 257, True, marks=pytest.mark.slow),
+        # its contour, oblique to the axes, is not found on so few patches: what is left is their staircase
+        pytest.param(5, 30, 257, False, marks=pytest.mark.slow),
+    ],
 )
-def test_ellipse_of_any_direction_is_hertzs_within_its_uncertainty(ratio, degrees, patches):
+def test_ellipse_of_any_direction_is_hertzs_within_its_uncertainty(ratio, degrees, patches, smooth):
     ellipse = Ellipse(ratio, degrees)
     s = ellipse.indent(patches, estimate_uncertainty=True)
     exact = {"peak_pressure": P0, "approach": ellipse.approach, "contact_radius": 1e-4}
     for name, value in exact.items():
         assert abs(getattr(s, name) - value) <= getattr(s.uncertainty, name), name
-    # the order 3/2 of the patch in the short axis b, 1e-5 where b has 35 patches
-    order = 1e-5 * max(1.0, (35 * 2.4 * ratio / patches) ** 1.5)
-    assert s.peak_pressure == pytest.approx(P0, rel=order)
-    assert s.approach == pytest.approx(ellipse.approach, rel=order)
-    assert ellipse.semi_axes(s) == pytest.approx((ellipse.a, ellipse.b), rel=1e-4)
+    assert (s._level.shape is not None) == smooth
+    if smooth:
+        # the order 3/2 of the patch in the short axis b, 1e-5 where b has 35 patches
+        order = 1e-5 * max(1.0, (35 * 2.4 * ratio / patches) ** 1.5)
+        assert s.peak_pressure == pytest.approx(P0, rel=order)
+        assert s.approach == pytest.approx(ellipse.approach, rel=order)
+        assert ellipse.semi_axes(s) == pytest.approx((ellipse.a, ellipse.b), rel=1e-4)
     x = np.linspace(-1.05, 1.05, 41)[:, None] * ellipse.a
     error = np.abs(s.pressure(x, x.T) - ellipse.pressure(x, x.T))
     assert np.all(error <= s.pressure_uncertainty(x, x.T))
@@ -215,3 +224,40 @@ def test_an_edge_that_is_no_smooth_curve_is_left_to_the_patches(profile):
 def test_edge_correction_has_to_be_a_truth_value():
     with pytest.raises(ValueError, match="edge_correction = 1;"):
         Ellipse(2).indent(65, edge_correction=1)
+
+
+@pytest.mark.parametrize("flat", [0.5, 0.7, 0.85])
+def test_punch_with_a_round_edge_is_sneddons(flat):
+    """Flat to b, then (r - b)^2/2R: G(x) = x int g' / sqrt(x^2 - r^2) dr in closed form (Sneddon 1965)."""
+    a, R, E_star = 1.0, 100.0, 1.0
+
+    def G(x):
+        out = np.maximum(x, flat)
+        return out / R * (np.sqrt(out**2 - flat**2) - flat * np.arccos(flat / out))
+
+    s, w = np.polynomial.legendre.leggauss(200)
+    x = flat + (a - flat) * (1 + s) / 2
+    load = 2 * E_star * (flat * G(a) + (a - flat) / 2 * w @ (G(a) - G(x)))
+
+    def punch(x, y):
+        return np.maximum(np.hypot(x, y) - flat, 0) ** 2 / (2 * R)
+
+    found = semianalytic.indent(
+        profile=punch, half_width=1.15, load=load, coatings=(), substrate=(1.0, 0.0), patches=257
+    )
+    assert found.uncertainty is not None
+    assert abs(found.contact_radius - a) <= found.uncertainty.contact_radius < 1e-3
+    assert abs(found.approach - G(a)) <= found.uncertainty.approach < 1e-4 * G(a)
+
+    def pressure(r):  # -(1/pi) int phi'(t) / sqrt(t^2 - r^2) dt, t^2 = r^2 + v^2
+        first = np.sqrt(max(flat**2 - r**2, 0.0))
+        v = first + (np.sqrt(a**2 - r**2) - first) * ((1 + s) / 2) ** 2
+        weight = w / 2 * 2 * ((1 + s) / 2) * (np.sqrt(a**2 - r**2) - first)
+        t = np.sqrt(r * r + v * v)
+        root, angle = np.sqrt(np.maximum(t * t - flat**2, 1e-30)), np.arccos(np.minimum(flat / t, 1))
+        slope = (root - flat * angle) / R + t / R * (t / root - flat**2 / (t * root))
+        return E_star / np.pi * weight @ (slope / t)
+
+    places = np.array([0.0, 0.4, 0.9, 0.95, 0.99, 0.999])
+    exact = np.array([pressure(r) for r in places])
+    assert np.all(np.abs(found.pressure(places) - exact) <= found.pressure_uncertainty(places))

@@ -16,6 +16,7 @@ app.command("mutation.command:mutants")
 app.command("open_digits_made.command:vectors")
 app.command("energy_bounds.command:bounds")
 app.command("assumption_maps_made.command:assumptions")
+app.command("tour_recording:tour")
 
 if __name__ == "__main__":
     sys.exit(app(result_action="return_value"))

@@ -158,7 +158,7 @@ def run(
             {
                 "guest": host.name,
                 "exit_code": code,
-                "cases": {r.name: {o: n for o, n in outcome_counts([r]).items()} for r in found.results},
+                "cases": {r.name: dict(outcome_counts([r])) for r in found.results},
                 "known": list(found.known),
                 "unexpected": list(found.unexpected),
             }
@@ -264,16 +264,12 @@ def _packed(guest: Guest) -> list[str]:
     place = guest.folder / guest.results
     found = [name for name in shipped_cases() if (place / name).is_dir()]
     if not found:
-        raise CommandError(
-            f"{place}: holds no shipped case; run coatcheck guest pack, or name the case files"
-        )
+        raise CommandError(f"{place}: holds no shipped case; run guest pack, or name the case files")
     return found
 
 
 def _print(found: Examined, seconds: float, page: Path) -> None:
-    table = named_table(
-        "case", "agrees", "disagrees", "inconclusive", "no result", "unsupported", "largest", "s"
-    )
+    table = named_table("case", *(o.replace("_", " ").lower() for o in SHOWN), "largest", "s")
     for result in found.results:
         counts = outcome_counts([result])
         worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
@@ -290,25 +286,20 @@ def _print(found: Examined, seconds: float, page: Path) -> None:
 
 def _messages(found: Examined) -> list[str]:
     """A line for each different message about what does not agree, the first of each case."""
-    lines = []
-    for name, reason in found.unexpected:
-        lines.append(f"[bold red]{escape(name)}:[/] listed as a known failure ({escape(reason)}), but agrees")
+    listed = "listed as a known failure"
+    lines = [f"[bold red]{escape(n)}:[/] {listed} ({escape(why)}), but agrees" for n, why in found.unexpected]
     for result in found.results:
         seen: Counter[str] = Counter()
         likely = slips(result, found.guest.name)
         lines += [f"[bold]->[/] {escape(result.name)}: {escape(one_line(str(slip)))}" for slip in likely]
         places = {place for slip in likely for place in slip.places}
         for claim, verdict in result.verdicts:
-            if (
-                verdict.outcome in (Outcome.AGREES, Outcome.UNSUPPORTED)
-                or (claim.quantity, claim.line) in places
-            ):
+            explained = (claim.quantity, claim.line) in places
+            if explained or verdict.outcome in (Outcome.AGREES, Outcome.UNSUPPORTED):
                 continue
             where = "" if claim.line == "contact" else f" on {claim.line}"
-            key = (
-                verdict.reason if verdict.difference is None else f"{claim.quantity}{where}: {verdict.reason}"
-            )
-            seen[key] += 1
+            what = "" if verdict.difference is None else f"{claim.quantity}{where}: "
+            seen[what + verdict.reason] += 1
         for text, count in list(seen.items())[:MOST_SHOWN]:
             more = f" ({count} comparisons)" if count > 1 else ""
             lines.append(f"[bold red]{escape(result.name)}:[/] {escape(one_line(text))}{more}")

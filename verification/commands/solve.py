@@ -14,7 +14,7 @@ from cyclopts import Parameter
 from rich.console import Console
 from rich.markup import escape
 from rich.progress import Progress
-from rich.table import Table
+from rich.table import Column, Table
 
 from verification.cases.case_file import Case, parse_case, read_case, shipped_cases
 from verification.cases.plausibility import beyond_limits, refused
@@ -111,7 +111,7 @@ def solve(
     print_warnings(late, case.name, strict=strict, silent=as_json)
     apart = differences(first, second) if second is not None else ()
     if not (as_json or strict):
-        _print(case, first, second, apart, halved)
+        _print(case, first, apart, halved)
     with bars() as bar:
         task = bar.add_task("error of the model", total=1)
         beyond = model_error(case.problem)
@@ -124,11 +124,24 @@ def solve(
 
         write(first, f"{stack(case)}\n{conditions(case.problem)}", plot, section(case.problem, case.residual))
     if as_json:
-        print_json(_content(case, (*case.warnings, *late, *costs), beyond, first, second, apart, halved))
+        content = {  # in SI; NaN of a place that does not exist as text
+            "title": case.title,
+            "source": case.source,
+            "problem": describe(case.problem),
+            "residual_stress": case.residual,
+            "case_file": case.text,
+            "warnings": [*case.warnings, *late, *costs],
+            "model_error": {"message": beyond.message(), **encode(beyond)},
+            "answer": encode(first),
+            "check": second and encode(second),
+            "differences": [encode(one) for one in apart],
+            "half_of_the_sublayers": [encode(one) for one in halved],
+        }
+        print_json(content)
     else:
         if strict:
-            _print(case, first, second, apart, halved)
-        _print_model(case, beyond)
+            _print(case, first, apart, halved)
+        _print_model(case, beyond, checked=second is not None)
         print_out(_times(first, second, time.perf_counter() - begin))
     agree = all(difference.within for difference in apart)
     return EXIT[Outcome.AGREES if agree else Outcome.DISAGREES]
@@ -205,59 +218,23 @@ def _halved(case: Case, first: Answer) -> tuple[Difference, ...]:
     return differences(first, _answer(half, METHOD))
 
 
-def _content(
-    case: Case,
-    warnings: Sequence[str],
-    beyond: ModelError,
-    first: Answer,
-    second: Answer | None,
-    apart: Sequence[Difference],
-    halved: Sequence[Difference],
-) -> dict[str, Any]:
-    """Everything, in SI; NaN of a place that does not exist as text."""
-    return {
-        "title": case.title,
-        "source": case.source,
-        "problem": describe(case.problem),
-        "residual_stress": case.residual,
-        "case_file": case.text,
-        "warnings": list(warnings),
-        "model_error": {"message": beyond.message(), **encode(beyond)},
-        "answer": encode(first),
-        "check": None if second is None else encode(second),
-        "differences": [encode(one) for one in apart],
-        "half_of_the_sublayers": [encode(one) for one in halved],
-    }
+def _table(words: Sequence[str], figures: Sequence[str]) -> Table:
+    """A table with columns of ``words`` and of right-aligned ``figures``."""
+    right = (Column(head, justify="right", no_wrap=True) for head in figures)
+    return Table(*words, *right, box=None, header_style="bold", pad_edge=False)
 
 
-def _print(
-    case: Case,
-    first: Answer,
-    second: Answer | None,
-    apart: Sequence[Difference],
-    halved: Sequence[Difference],
-) -> None:
-    gap = {difference.key: difference for difference in apart}
-    coarser = {difference.key: difference for difference in halved}
+def _print(case: Case, first: Answer, apart: Sequence[Difference], halved: Sequence[Difference]) -> None:
+    besides = {"elements − this": apart, "half the sub-layers − this": halved}
+    more = {head: {one.key: one for one in found} for head, found in besides.items() if found}
 
     def checked(key: tuple[str, ...], unit: float) -> list[str]:
-        cells = []
-        if second:
-            shown = f"{gap[key].value / unit:+.1e}"
-            cells.append(shown if gap[key].within else f"[bold red]{shown}[/]")
-        return cells + ([f"{coarser[key].value / unit:+.1e}"] if coarser else [])
+        shown = {head: f"{found[key].value / unit:+.1e}" for head, found in more.items()}
+        beyond = apart and not more["elements − this"][key].within
+        return [f"[bold red]{s}[/]" if beyond and h.startswith("elements") else s for h, s in shown.items()]
 
-    numbers = Table(box=None, header_style="bold", pad_edge=False)
-    table = Table(box=None, header_style="bold", pad_edge=False)
-    for head in ("contact", "unit"):
-        numbers.add_column(head)
-    for head in ("largest", "place"):
-        table.add_column(head)
-    more = ["elements − this"] * (second is not None) + ["half the sub-layers − this"] * bool(halved)
-    for head in ("value", "±", *more):
-        numbers.add_column(head, justify="right", no_wrap=True)
-    for head in ("MPa", "± MPa", "x um", "z um", *(f"{head} MPa" for head in more)):
-        table.add_column(head, justify="right", no_wrap=True)
+    numbers = _table(("contact", "unit"), ("value", "±", *more))
+    table = _table(("largest", "place"), ("MPa", "± MPa", "x um", "z um", *(f"{head} MPa" for head in more)))
     for name, (value, stated) in first.numbers.items():
         unit, scale = ("MPa", 1e6) if QUANTITIES[name].unit == "Pa" else ("um", 1e-6)
         cells = [_value(value / scale, stated and stated / scale), _spread(stated, scale)]
@@ -289,7 +266,7 @@ def _print(
     )
 
 
-def _print_model(case: Case, beyond: ModelError) -> None:
+def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:
     """What the answer is good for: error of the model, range of the verification."""
     if beyond.parts:
         head = "the model itself is good to"
@@ -298,7 +275,8 @@ def _print_model(case: Case, beyond: ModelError) -> None:
         reasons = ", ".join(dict.fromkeys(reason for _, reason in beyond.missing))
         print_out(escape(f"{beyond.message()}: {reasons}"))
     if outside := outside_verified(case):
-        print_out(escape(f"beyond the range in which both methods were compared: {outside}; try --check"))
+        hint = "compared here by --check" if checked else "try --check"
+        print_out(escape(f"beyond the range in which both methods were compared: {outside}; {hint}"))
     if case.residual:
         print_out(
             "with residual stress; the shear of an interface near a free edge of its coating is not covered"

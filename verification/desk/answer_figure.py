@@ -50,11 +50,13 @@ def draw(answer: Answer, title: str, below: Section | None = None) -> Figure:
     Of an uncoated body those of the surface, sigma_zz = -p.   below : the section on top, if given.
     """
     figure = Figure(figsize=(8.5, 9.0 if below else 6.4), layout="constrained")
-    panels = figure.subplots(3 if below else 2, 1, sharex=True)
-    upper, lower = panels[-2:]
+    panels = figure.subplots(3 if below else 2, 2, sharex="col", width_ratios=(3, 1))
+    upper, lower = panels[-2:, 0]
+    for beside in panels[-2:, 1]:  # room for the legends
+        beside.set_visible(False)
     a = answer.numbers["contact_radius"][0] * 1e6
     if below:
-        _section(figure, panels[0], below, a)
+        _section(figure, panels[0, 0], panels[0, 1], below, a)
     for course, colour, style in _cycle(answer.courses):
         upper.plot(course.x * 1e6, course.stress[0] / 1e6, linestyle=style, color=colour, label=_name(course))
         for at in answer.extremes:
@@ -76,12 +78,16 @@ def draw(answer: Answer, title: str, below: Section | None = None) -> Figure:
         for edge in (-a, a):
             axes.axvline(edge, color="#777777", linewidth=0.8, linestyle=":")
         axes.axvspan(-a, a, color="#000000", alpha=0.05, linewidth=0, label="contact")
-        axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+        legend = axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
+        legend.set_in_layout(False)  # in the room beside the panel
     return figure
 
 
-def _section(figure: Figure, axes: Axes, below: Section, a: float) -> None:
-    """First principal stress of each layer as a field, with its boundaries and the contact."""
+def _section(figure: Figure, axes: Axes, beside: Axes, below: Section, a: float) -> None:
+    """First principal stress of each layer as a field, with its boundaries and the contact.
+
+    beside : axes of the same stress along the depth at the largest tension.
+    """
     least, most = (float(end([end(s) for s in below.stress])) / 1e6 for end in (np.min, np.max))
     for z, stress in zip(below.z, below.stress, strict=True):
         field = axes.pcolormesh(
@@ -101,15 +107,22 @@ def _section(figure: Figure, axes: Axes, below: Section, a: float) -> None:
         for z, s in zip(below.z, below.stress, strict=True)
     )
     axes.plot(highest[1] * 1e6, highest[2] * 1e6, "k^", markersize=6, clip_on=False)
+    column = int(np.argmin(np.abs(below.x - highest[1])))
+    for z, stress in zip(below.z, below.stress, strict=True):
+        beside.plot(stress[:, column] / 1e6, z * 1e6, color=COLOURS[0])
+        beside.axhline(z[0] * 1e6, color="black", linewidth=0.8)
+    beside.plot(highest[0] / 1e6, highest[2] * 1e6, "k^", markersize=6, clip_on=False)
+    beside.set_ylim(float(below.z[-1][-1]) * 1e6, 0.0)
+    beside.set_title(f"σ$_1$ [MPa] at x = {highest[1] * 1e6:.1f} µm", fontsize=8)
+    beside.tick_params(labelbottom=True, labelleft=False)
     axes.plot([-a, a], [0, 0], color="black", linewidth=4, solid_capstyle="butt", clip_on=False)
     axes.set_ylim(float(below.z[-1][-1]) * 1e6, 0.0)
     axes.set_ylabel("z [µm]")
     axes.grid(visible=False)
     axes.set_title(
-        "section of the flat: bar contact, lines interfaces, white no tension, triangle largest tension",
-        fontsize=8,
+        "section of the flat: bar = contact, white = no tension, triangle = largest tension", fontsize=8
     )
-    figure.colorbar(field, ax=axes, label="$σ_1$ [MPa]", fraction=0.05)
+    figure.colorbar(field, ax=beside, label="$σ_1$ [MPa]", fraction=0.1)
 
 
 def _name(course: Course) -> str:

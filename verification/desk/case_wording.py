@@ -2,8 +2,8 @@
 
 ball "10 mm" or "10 mm, 210 GPa, 0.3" (radius; of an elastic ball E, nu), coating "3 um, 450 GPa, 0.22"
 (thickness, E, nu), substrate "210 GPa, 0.3"; bare numbers are SI. "d = 20 mm" is a diameter, and a name may
-come before the first number of a solid: "DLC 3 um, 450 GPa, 0.22". The reader of case files checks them:
-both have the same limits, units, messages.
+come before the first number of a solid: "DLC 3 um, 450 GPa, 0.22", "100Cr6 210 GPa, 0.3". The reader of case
+files checks them: both have the same limits, units, messages.
 """
 
 import json
@@ -13,7 +13,8 @@ from collections.abc import Sequence
 __all__ = ["case_text"]
 
 _SIZE = re.compile(r"(d|D|diameter|r|R|radius)\s*=?\s*([\d.+-].*)")
-_NAMED = re.compile(r"\s*([^\W\d][\w-]*(?: [^\W\d][\w-]*)*)\s+(?=[\d.+-])")
+# words with a letter in each, before a number: DLC, 100Cr6, a-C:H, tool steel
+_NAMED = re.compile(r"\s*((?:(?=[\w.:/-]*[^\W\d_])[\w.:/-]+\s+)+)(?=[\d.+-])")
 _COMMA = re.compile(r"\d,\d")
 
 
@@ -56,7 +57,7 @@ def _size(word: str) -> tuple[str, str]:
 def _named(text: str) -> tuple[str, str]:
     """The entry of a name that comes before the first number, with the text behind it."""
     found = _NAMED.match(text)
-    return (f"name = {json.dumps(found[1])}, ", text[found.end() :]) if found else ("", text)
+    return (f"name = {json.dumps(found[1].strip())}, ", text[found.end() :]) if found else ("", text)
 
 
 def _coating(option: str, text: str) -> str:

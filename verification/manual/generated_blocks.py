@@ -18,6 +18,7 @@ from verification.guests.pages import guests_section
 from verification.manual.baseline_numbers import FOLDER, baseline, largest, points, stored
 from verification.manual.markdown_text import paragraphs, shown, symbol, table, text
 from verification.manual.tour_output import WORKED, solved
+from verification.manual.tour_session import tour_session
 from verification.page.number_text import scientific
 from verification.problem.quantity import QUANTITIES
 from verification.report.credibility import model_section
@@ -222,6 +223,7 @@ _ALL: Sequence[Callable[[], str]] = (
     real_guests,
     history,
     solved,
+    tour_session,
     enclosures,
     two_sided,
     assumption_costs,

@@ -41,20 +41,31 @@ def transcript(words: Sequence[str], work: Path, prompt: str = "") -> str:
 
     prompt : a line before it.
     """
-    path = os.pathsep.join([str(SOURCE.parents[2]), *filter(None, sys.path)])
     done = subprocess.run(
         [sys.executable, "-m", "verification.cli", *words],
         cwd=work,
-        env={**os.environ, "PYTHONPATH": path, "COLUMNS": "100", "NO_COLOR": "1"},
+        env=variables(),
         capture_output=True,
         text=True,
         check=True,
     )
-    # The time of one solve on a busy machine tells nothing.
-    printed = re.sub(r"^time: .*\n?", "", done.stdout.strip(), flags=re.MULTILINE)
-    lines = [line.rstrip() for line in (*done.stderr.splitlines(), *printed.splitlines())]
-    wrapped = [textwrap.fill(line, 88) if len(line) > 88 else line for line in lines]
-    return "\n".join(["```text", *filter(None, [prompt]), *wrapped, "```"])
+    lines = shown_lines(done.stderr, done.stdout)
+    return "\n".join(["```text", *filter(None, [prompt]), *lines, "```"])
+
+
+def variables() -> dict[str, str]:
+    """The environment of a command whose output a page shows."""
+    path = os.pathsep.join([str(SOURCE.parents[2]), *filter(None, sys.path)])
+    return {**os.environ, "PYTHONPATH": path, "COLUMNS": "100", "NO_COLOR": "1"}
+
+
+def shown_lines(warned: str, printed: str) -> list[str]:
+    """Lines of what a command printed, warnings first, wrapped for a page."""
+    # Times by the clock of a busy machine tell nothing.
+    printed = re.sub(r"^time: .*\n?", "", printed.strip(), flags=re.MULTILINE)
+    printed = re.sub(r"( points) in [\d.]+ s:", r"\1:", printed)
+    lines = [line.rstrip() for line in (*warned.splitlines(), *printed.splitlines())]
+    return [textwrap.fill(line, 88) if len(line) > 88 else line for line in lines]
 
 
 def worked(number: int) -> str:

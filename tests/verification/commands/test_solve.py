@@ -12,6 +12,7 @@ from verification.cases.case_file import parse_case
 from verification.commands import solve as command
 from verification.desk import contact_answer as desk
 from verification.desk.case_wording import case_text
+from verification.desk.stack_text import stack
 
 WORDS = ["solve", "--ball", "10 mm", "--load", "20 N", "--substrate", "210 GPa, 0.3"]
 FAST = [*WORDS, "--friction", "0.25"]
@@ -79,6 +80,14 @@ def test_json_holds_everything_and_the_figure_is_written(tmp_path):
     assert len(course["x"]) == len(course["stress"][0])
     assert parse_case(content["case_file"].encode(), Path("again.toml")).problem.radius == 0.01
     assert (tmp_path / "stress.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("name", ["DLC", "100Cr6", "a-C:H", "tool steel", "WC/C"])
+def test_a_solid_may_have_a_name(name):
+    text = case_text("10 mm", "20 N", f"{name} 210 GPa, 0.3", ["2 um, 180 GPa, 0.2"])
+    case = parse_case(text.encode(), Path("options"))
+    assert case.problem.substrate == (210e9, 0.3)
+    assert stack(case).endswith(f" / {name}")
 
 
 @pytest.mark.parametrize("suffix", [".pdf", ".svg"])

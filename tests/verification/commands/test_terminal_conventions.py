@@ -148,7 +148,8 @@ def test_names_are_whole_in_a_terminal(stored, screen, width):
     (stored / "report.json").write_text(report_json(Material(results, INFO)))
     assert list_cases() == 0
     assert compare(stored, stored) == 0
-    assert [n for n in [name, *shipped_cases(), *shaped_cases(), *published_cases()] if n not in shown()] == []
+    names = [name, *shipped_cases(), *shaped_cases(), *published_cases()]
+    assert [n for n in names if n not in shown()] == []
     assert max(map(len, shown().splitlines())) <= width
 
 

@@ -129,7 +129,7 @@ def largest(material: Material) -> list[str]:
         and (gap := plane_difference(plane, float(divisor(result, "sigma_xx", 0.0)))) is not None
     ]
     if gaps:
-        texts.append(f"In the pictures, which are not judged, it is {scientific(max(gaps))}.")
+        texts.append(f"In the pictures, not judged, {scientific(max(gaps))}.")
     return texts
 
 
@@ -240,11 +240,11 @@ def worth(material: Material) -> list[Worth]:
         count = str(counts(material.published)[0])
         found.append(Worth("published values counted", count, "#published", None))
     if faults := evidence.faults:
-        value = f"{faults.caught} of {len(faults.rows)}"
+        value = f"{faults.caught} of {len(faults.tried)}"
         recorded("planted faults detected", value, "#faults", "faults", faults.started, faults.commit)
         if of_method(faults):
             noticed, total = method_score(faults)
-            name = "of these, in the semi-analytical method, noticed by comparison, invariant or study"
+            name = "of these, in the semi-analytical method"
             found.append(Worth(name, f"{noticed} of {total}", "#faults", None, kinds(faults)))
         if faults.alarms:
             silent = [row not in faults.alarms for row in faults.controls]
