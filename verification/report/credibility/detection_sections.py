@@ -40,10 +40,12 @@ _CATCHES = {
 def faults_message(record: Record) -> str:
     """The score as a message."""
     text = (
-        f"{record.caught} of {len(record.rows)} planted faults are detected "
+        f"{record.caught} of {len(record.tried)} planted faults are detected "
         f"({plain(100 * record.share, 3)} %), "
         f"{record.as_predicted} of them by the check predicted before the trial"
     )
+    if untried := len(record.rows) - len(record.tried):
+        text += f"; {untried} were not tried"
     if of_method(record):
         found, count = method_score(record)
         text += (

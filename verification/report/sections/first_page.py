@@ -240,7 +240,7 @@ def worth(material: Material) -> list[Worth]:
         count = str(counts(material.published)[0])
         found.append(Worth("published values counted", count, "#published", None))
     if faults := evidence.faults:
-        value = f"{faults.caught} of {len(faults.rows)}"
+        value = f"{faults.caught} of {len(faults.tried)}"
         recorded("planted faults detected", value, "#faults", "faults", faults.started, faults.commit)
         if of_method(faults):
             noticed, total = method_score(faults)
