@@ -34,8 +34,8 @@ INSIDE, AT_EDGE, BEFORE = 2.5, 5.0, 0.4
 # what the refinement of a smooth edge does not show: of the root mean square of the change of the pressure,
 # and of the peak pressure; felt to a depth of some patches
 FLOOR, REACH = (0.35, 6e-7), 8.0
-# deeper than some patches a stress follows the moments of the pressure, of the second order a^2 at a given load:
-# of the relative uncertainty of a, which is 5 times its error in the median; full below as many patches
+# deep down a stress follows the moments of the pressure, the second one a^2 at a given load: share of the
+# relative uncertainty of a, 5 times its error in the median; in full below as many patches
 DEEP = 0.1, 32.0
 # likewise near the edge, of the ripple of the patches, which the shape averages, and of the largest change
 # there; as far as patches and shape meet
