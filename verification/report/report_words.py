@@ -5,14 +5,17 @@ from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
+from markupsafe import Markup
 
 
 @cache
 def _texts() -> Any:
     folder = FileSystemLoader(Path(__file__).parent / "html")
-    return Environment(loader=folder, undefined=StrictUndefined).get_template("words.html").module
+    made = Environment(loader=folder, undefined=StrictUndefined, autoescape=True)
+    return made.get_template("words.html").module
 
 
 def stated(name: str, **numbers: object) -> str:
     """The text ``name`` of words.html in one line, as plain text that a page escapes."""
-    return " ".join(str(getattr(_texts(), name)(**numbers)).split())
+    # the page escapes all of it, once
+    return Markup(" ".join(str(getattr(_texts(), name)(**numbers)).split())).unescape()

@@ -7,7 +7,7 @@ import pytest
 from synthetic_study import study
 
 from verification.credibility import accuracy_study as accuracy_study
-from verification.credibility.exact_errors import HERTZ, ExactError
+from verification.credibility.exact_errors import FILMS, HERTZ, ExactError
 from verification.credibility.faults.fault_planting import Edit, planted
 from verification.credibility.refinement_studies import Level, Refinement
 from verification.credibility.study_verdicts import STAIRCASE, verdicts
@@ -40,7 +40,7 @@ def clean():
 
 def test_every_part_meets_its_limit(clean):
     assert [row.name for row in clean if row.outcome is not Outcome.AGREES] == []
-    assert {row.name.partition(":")[0] for row in clean} == {"coated", "uncoated"}
+    assert {row.name.partition(":")[0] for row in clean} == {"coated", "uncoated", *FILMS}
 
 
 @pytest.mark.parametrize(
