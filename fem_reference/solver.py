@@ -43,7 +43,7 @@ CONTRASTS = {
     10.0: {"fast": 0.17, "default": 0.12, "fine": 0.1},
     100.0: {"fast": 0.15, "default": 0.1, "fine": 0.085},
 }
-LOAD_TOLERANCE = 3e-8
+LOAD_TOLERANCE = 1e-8
 
 
 def solve(
