@@ -36,7 +36,8 @@ def standard_claims(problem: CoatedContact) -> tuple[Claim, ...]:
 
 
 def _of_shape(problem: CoatedContact) -> tuple[Claim, ...]:
-    """Of an indenter that is no sphere: numbers of the contact, every quantity on every line."""
+    """For an indenter that is no sphere: numbers of the contact, and every quantity on every line, where
+    the lines have points (``line_sampling.CLEAR``)."""
     why = "numbers of the contact as a whole"
     claims = [
         Claim(name, "contact", pair, QUANTITIES[name].cap, why)

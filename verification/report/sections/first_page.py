@@ -24,6 +24,7 @@ from verification.report.sections.accuracy_section import accuracies
 from verification.report.tables.case_lookup import divisor, layers
 from verification.running.case_result import CaseResult
 from verification.running.published_counts import counts
+from verification.sampling.line_sampling import CLEAR
 from verification.sources.source_record import Independence
 from verification.sources.source_registry import CLOSED, SOURCES, independence
 
@@ -134,10 +135,14 @@ def largest(material: Material) -> list[str]:
 
 
 def left_out(material: Material) -> tuple[float, int]:
-    """The widest zone at the contact edge that is not judged, in percent; the number of comparisons with "
-    "one."""
-    edges = [claim.edge for result in material.results for claim, _ in result.verdicts if claim.edge]
-    return 100 * max(edges, default=0.0), len(edges)
+    """The widest zone at the contact edge that is not judged [% of a], and the number of comparisons with
+    one."""
+    zones = [
+        CLEAR if result.problem.get("indenter") and claim.line != "contact" else claim.edge
+        for result in material.results
+        for claim, _ in result.verdicts
+    ]
+    return 100 * max(zones, default=0.0), sum(zone > 0 for zone in zones)
 
 
 def _scale(claim: Claim) -> str:
