@@ -36,7 +36,7 @@ Coatings = tuple[tuple[float, float, float], ...]
 Ball = tuple[float, float, Coatings]
 
 # Triangle size over its distance from the contact edge.
-QUALITY = {"fast": 0.27, "default": 0.16, "fine": 0.1}
+QUALITY = {"fast": 0.27, "default": 0.15, "fine": 0.1}
 # The same where a layer is stiffer than the next below by more than this factor: it bends like a plate, whose
 # stresses exceed the pressure. Under a compliant layer errors are below those of bare steel at the same size.
 CONTRASTS = {

@@ -441,3 +441,8 @@ def shipped_cases() -> dict[str, Path]:
 def shaped_cases() -> dict[str, Path]:
     """The indenters of the default run that are no spheres, likewise."""
     return {path.stem: path for path in sorted(SHAPES.glob("*.toml"))}
+
+
+def default_cases() -> dict[str, Path]:
+    """All cases of the default run, the spheres first."""
+    return shipped_cases() | shaped_cases()

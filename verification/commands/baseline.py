@@ -8,7 +8,7 @@ from pathlib import Path
 
 from rich.markup import escape
 
-from verification.cases.case_file import shipped_cases
+from verification.cases.case_file import default_cases
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import BASELINE, require_checkout
@@ -86,7 +86,7 @@ def _refuse_unfit(runs: Sequence[StoredRun]) -> None:
     """Raises CommandError with the reason why the runs cannot be a baseline."""
     run = runs[0]
     names = Counter(result.name for run in runs for result in run.results)
-    lacking = [name for name in shipped_cases() if name not in names]
+    lacking = [name for name in default_cases() if name not in names]
     twice = [name for name, count in names.items() if count > 1]
     other = [
         one for one in runs if (one.info.machine, one.info.versions) != (run.info.machine, run.info.versions)

@@ -16,7 +16,7 @@ from rich.markup import escape
 from rich.progress import Progress
 from rich.table import Column, Table
 
-from verification.cases.case_file import Case, parse_case, read_case, shipped_cases
+from verification.cases.case_file import Case, default_cases, parse_case, read_case
 from verification.cases.plausibility import beyond_limits, refused
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.exit_codes import with_exit_code
@@ -183,7 +183,7 @@ def _ticking(bar: Progress, seconds: float) -> Iterator[None]:
 def _from_file(file: str, given: Sequence[Any]) -> Case:
     if any(one is not None for one in given):
         raise CommandError(f"{file}: give a file or the options of a problem, not both")
-    return read_case(path_of(file, shipped_cases(), SHIPPED))
+    return read_case(path_of(file, default_cases(), SHIPPED))
 
 
 def _from_options(

@@ -9,7 +9,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.cases.case_file import shipped_cases
+from verification.cases.case_file import default_cases
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.shared_options import Output
@@ -51,7 +51,7 @@ def view(
         read_fields(output, case)
     except StoreError as error:
         stored = [path.stem for path in (output / "fields").glob("*.json")]
-        near = "" if case in (cases := shipped_cases()) else did_you_mean(case, [*stored, *cases])
+        near = "" if case in (cases := default_cases()) else did_you_mean(case, [*stored, *cases])
         raise CommandError(f"{error}; fields are written by: coatcheck run {case} --fields{near}") from None
     viewer = [sys.executable, "-m", "verification.desk.field_viewer"]
     words = [*viewer, str(output), case, f"{quantity} [Pa]"]

@@ -3,7 +3,7 @@
 from functools import cache
 from pathlib import Path
 
-from verification.cases.case_file import read_case, shipped_cases
+from verification.cases.case_file import default_cases, read_case
 from verification.cases.published_file import published_cases, read_published
 from verification.judging.verdict import Claim, compare, judge
 from verification.problem.line_profile import Profile
@@ -28,7 +28,7 @@ def baseline() -> Baseline:
 def stored(name: str) -> CaseResult:
     """A case with the numbers of the baseline and the comparisons of its manifest, judged anew."""
     manifest, published = baseline().manifests[name], baseline().published(name)
-    case = read_published(published_cases()[name]) if published else read_case(shipped_cases()[name])
+    case = read_published(published_cases()[name]) if published else read_case(default_cases()[name])
     profiles = [
         Profile(n.quantity, n.line, n.position, n.value, n.source, n.uncertainty)
         for n in baseline().cases[name]

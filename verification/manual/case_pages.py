@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.cases.case_file import shipped_cases
+from verification.cases.case_file import default_cases
 from verification.cases.published_file import PublishedCase, published_cases, read_published
 from verification.judging.verdict import Outcome
 from verification.manual import case_figures
@@ -45,10 +45,10 @@ that were recomputed from formulas are compared and not counted either.
 
 def contact_pages() -> Iterator[tuple[str, str | bytes]]:
     """Path with content of the page and the figure of every contact case, then their list."""
-    for name in shipped_cases():
+    for name in default_cases():
         yield f"cases/{name}.svg", case_figures.of_case(name)
         yield f"cases/{name}.md", _contact_page(stored(name))
-    yield "cases/index.md", _index("Cases of the default run", CONTACTS, shipped_cases())
+    yield "cases/index.md", _index("Cases of the default run", CONTACTS, default_cases())
 
 
 def published_pages() -> Iterator[tuple[str, str | bytes]]:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from datetime import datetime
 from pathlib import Path
 
-from verification.cases.case_file import shipped_cases
+from verification.cases.case_file import default_cases
 from verification.cases.published_file import published_cases, read_published
 from verification.evidence import alarm_record
 from verification.evidence.assumption_maps import read_maps
@@ -34,7 +34,7 @@ FIELDS = ("stress", "pressure", "displacement")
 def headline() -> str:
     """The largest differences of every case of the default run."""
     rows = []
-    for name in shipped_cases():
+    for name in default_cases():
         result = stored(name)
         cells = [
             scientific(result_of.difference, 1)

@@ -177,7 +177,7 @@ def one_case(tmp_path, monkeypatch):
     """Arguments of a run whose shipped cases are one that takes no method, beside no baseline."""
     case = tmp_path / "quick.toml"
     case.write_text(QUICK)
-    monkeypatch.setattr(named_files, "shipped_cases", lambda: {"quick": case})
+    monkeypatch.setattr(named_files, "default_cases", lambda: {"quick": case})
     return {"quiet": True, "baseline": tmp_path / "none", "records": tmp_path / "none"}
 
 

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from verification.cases.case_file import Case, shaped_cases, shipped_cases
+from verification.cases.case_file import Case, default_cases
 from verification.cases.published_file import PublishedCase, published_cases, read_any_case
 from verification.cases.toml_file import CaseError
 from verification.commands.common.terminal import did_you_mean
@@ -21,7 +21,7 @@ def chosen_cases(names: Sequence[str]) -> list[Case | PublishedCase]:
 
     Raises CaseError for an unknown name, a file that cannot be used, or two cases of one name.
     """
-    shipped, published = shipped_cases() | shaped_cases(), published_cases()
+    shipped, published = default_cases(), published_cases()
     cases: list[Case | PublishedCase] = []
     for name in names or shipped:
         if name == "published":

@@ -2,7 +2,7 @@
 
 from rich.markup import escape
 
-from verification.cases.case_file import Case, read_case, shaped_cases, shipped_cases
+from verification.cases.case_file import Case, default_cases, read_case
 from verification.cases.published_file import PublishedCase, published_cases, read_published
 from verification.commands.common.shared_options import AsJson
 from verification.commands.common.terminal import named_table, print_json, print_out
@@ -10,7 +10,7 @@ from verification.commands.common.terminal import named_table, print_json, print
 
 def list_cases(*, as_json: AsJson = False) -> int:
     """List the shipped cases with their title, then the published results; sources with --json."""
-    cases = [read_case(path) for path in (shipped_cases() | shaped_cases()).values()]
+    cases = [read_case(path) for path in default_cases().values()]
     published = [read_published(path) for path in published_cases().values()]
     if as_json:
         keys = ("year", "tables")

@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from verification.cases.case_file import Case, read_case, shaped_cases, shipped_cases
+from verification.cases.case_file import Case, default_cases, read_case
 from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS
 from verification.credibility.faults.fault_outcome import row_of
 from verification.credibility.faults.fault_planting import Fault
@@ -27,7 +27,7 @@ def clean_folder(output: Path) -> Path:
 
 def clean_cases(faults: Sequence[Fault]) -> list[Case]:
     """The cases of all trials, which have to be solved without a fault first."""
-    shipped = shipped_cases() | shaped_cases()
+    shipped = default_cases()
     return [read_case(shipped[name]) for name in sorted({name for fault in faults for name in fault.cases})]
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from verification.cases.case_file import Case, read_case, shaped_cases, shipped_cases
+from verification.cases.case_file import Case, default_cases, read_case
 from verification.cases.published_file import PublishedCase, published_cases, read_published
 from verification.cases.published_table import PublishedColumn
 from verification.credibility import accuracy_study as accuracy_study
@@ -88,7 +88,7 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
     changes: list[tuple[float, str]] = []
     failing = {check.key: check for result in clean.values() for check in _of_clean(result)}
     with planted(fault.changes):
-        cases = [read_case((shipped_cases() | shaped_cases())[name]) for name in fault.cases]
+        cases = [read_case(default_cases()[name]) for name in fault.cases]
         for case in cases:
             found, profiles = _judged(case, clean[case.name], fault)
             checks += found

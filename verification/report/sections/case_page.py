@@ -4,7 +4,7 @@ import shlex
 from pathlib import PurePath
 from typing import Any
 
-from verification.cases.case_file import shaped_cases, shipped_cases
+from verification.cases.case_file import default_cases
 from verification.cases.published_file import published_cases
 from verification.judging.verdict import Outcome
 from verification.page.number_text import scientific
@@ -85,7 +85,7 @@ def rerun_command(name: str, command: str) -> str:
     own = [word for word in words if PurePath(word).stem == name and PurePath(word).name != name]
     if own:
         word = own[0]
-    elif name in words or name in shipped_cases() | shaped_cases() or name in published_cases():
+    elif name in words or name in default_cases() or name in published_cases():
         word = name
     else:
         word = f"{name}.toml"
