@@ -10,7 +10,7 @@ import pytest
 from quick_case import QUICK, coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
-from verification.cases.case_file import shaped_cases, shipped_cases
+from verification.cases.case_file import default_cases
 from verification.cases.published_file import published_cases
 from verification.commands.common.known_folders import BASELINE
 from verification.regression.baseline_change import (
@@ -243,7 +243,7 @@ def test_the_command_refuses_in_one_sentence_and_writes_nothing(tmp_path):
     run_directory(tmp_path / "partial", partial)
     bad = [
         result_of(contact(), name=name, points=9, failures={"hertz": "no"} if name == "05_ratio_4" else {})
-        for name in shipped_cases()
+        for name in default_cases()
     ]
     run_directory(tmp_path / "bad", bad)
     before = sorted(tmp_path.rglob("*"))
@@ -263,12 +263,12 @@ def test_the_command_refuses_in_one_sentence_and_writes_nothing(tmp_path):
 
 
 def test_the_command_updates_from_a_whole_run_and_shows_its_history(tmp_path):
-    results = [result_of(contact(), name=name, points=9) for name in shipped_cases()]
+    results = [result_of(contact(), name=name, points=9) for name in default_cases()]
     run_directory(tmp_path / "reports", results)
     done = coatcheck("baseline", "update", "--why", "the [bold]first[/]", "-b", "base", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     shown = json.loads(coatcheck("baseline", "show", "--json", "-b", "base", cwd=tmp_path).stdout)
-    assert list(shown["cases"]) == sorted(shipped_cases())
+    assert list(shown["cases"]) == sorted(default_cases())
     assert [u["why"] for u in shown["history"]] == ["the [bold]first[/]"]
     assert shown["history"][0]["commit"] == INFO.commit
     assert "the [bold]first[/]" in coatcheck("baseline", "show", "-b", "base", cwd=tmp_path).stdout
@@ -321,8 +321,8 @@ def test_the_shipped_baseline_is_whole_small_and_has_its_reasons():
     stored = read_baseline(BASELINE)
     assert stored is not None
     contacts = [name for name in stored.cases if not stored.published(name)]
-    assert set(shipped_cases()) <= set(contacts) <= {*shipped_cases(), *shaped_cases()}
-    assert set(stored.cases) <= {*shipped_cases(), *shaped_cases(), *published_cases()}
+    assert set(contacts) == set(default_cases())
+    assert set(stored.cases) <= {*default_cases(), *published_cases()}
     assert set(stored.manifests) == set(stored.cases)
     assert path_in(BASELINE).stat().st_size < 1_000_000  # 200,000 numbers take half of it
     assert all(update.why and update.when and update.versions for update in stored.history)

@@ -121,7 +121,7 @@ def test_a_case_that_claims_nothing_is_refused(tmp_path):
             (
                 Edit(
                     "verification.judging.standard_claims:standard_claims",
-                    "return tuple(claims)",
+                    "return (*claims, *_off_plane(problem, pairs))",
                     "return ()",
                 ),
             )
