@@ -95,6 +95,7 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
         if not abs(missing) < LOST * grid.force(p):
             return None
         problem.gap = gap + xp.asarray(u)
+        del edge, u  # a hundred numbers a patch at the edge, which the iteration does not need
         level = problem.solve(0.0, missing, start=xp.asarray(p))
         convolutions += level.convolutions + 1
         p = to_numpy(level.found.pressure)
@@ -104,7 +105,7 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
         moved = float(np.abs(step.change[-len(shape.harmonics) :]).sum()) * min(shape.axes)
         if moved < STILL * grid.d:
             break
-    edge = smooth_edge.edge_patches(shape, p, grid, problem.window)
+    edge = smooth_edge.edge_patches(shape, p, grid, problem.window).averaged
     if not edge.misfit < MISFIT or min(shape.axes) < NARROW * grid.d:
         return None
     either = problem.indenter.round or shape.outside

@@ -48,7 +48,7 @@ class EdgePatches:
     """The patches near the edge and the pressure in them.
 
     i, j : indices, (k,).  centre : f at the centres [Pa], (k,).  parts : means of f over PARTS x PARTS parts
-    [Pa], (k, PARTS^2).  share : integrated by parts, (k,).  misfit : largest distance by which the patches'
+    [Pa], (k, PARTS^2), or over the whole patch, (k, 1).  share : integrated by parts, (k,).  misfit : largest distance by which the patches'
     pressure misses f near the edge, in patches where f^2 is steepest.
     """
 
@@ -62,6 +62,11 @@ class EdgePatches:
     def embedded(self, i0: int, j0: int) -> "EdgePatches":
         """The same on a grid of which the patches were a window that begins at i0, j0."""
         return replace(self, i=self.i + i0, j=self.j + j0)
+
+    @property
+    def averaged(self) -> "EdgePatches":
+        """The same with one mean a patch, all that is needed once the rounds are over."""
+        return replace(self, parts=self.parts.mean(axis=1, keepdims=True))
 
 
 def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatches:
