@@ -69,7 +69,7 @@ class HarmonicCompliance:
         """Solutions, by number, whose weighted sum is that of harmonic m."""
         return _weights(self.solved, m)
 
-    def loads(self, x: np.ndarray, y: np.ndarray, forces: np.ndarray) -> np.ndarray:
+    def nodal_loads(self, x: np.ndarray, y: np.ndarray, forces: np.ndarray) -> np.ndarray:
         """L of ``forces`` (points, columns) at points of the surface, (harmonics, nodes, columns)."""
         onto = self._shapes(np.hypot(x, y)).T.tocsr()
         theta = np.arctan2(y, x)

@@ -71,7 +71,7 @@ def check_pressure(
     def under(size: float) -> OffAxisFields:
         d = discretised(solid, size, size / 2, order)
         compliance = harmonic_compliance(solid, d, int(harmonics), 1)
-        return OffAxisFields.of(compliance, angular.loads(compliance), friction, angular)
+        return OffAxisFields.of(compliance, angular.nodal_loads(compliance), friction, angular)
 
     fine = under(size)
     return PressedSolid(fine, under(COARSER * size) if estimate_uncertainty else None, unit)
@@ -123,7 +123,7 @@ class AngularPressure:
         """p; x and y over ``reach``."""
         return np.asarray(self.pressure(self.reach * x, self.reach * y), dtype=float) / self.scale
 
-    def loads(self, compliance: HarmonicCompliance) -> np.ndarray:
+    def nodal_loads(self, compliance: HarmonicCompliance) -> np.ndarray:
         """Its products with the shape functions, (harmonics, nodes)."""
         node, weight = np.polynomial.legendre.leggauss(RADIAL)
         vertices = compliance.nodes[:: compliance.discretisation.order]

@@ -254,7 +254,7 @@ def corrected(
         tests = root**3 * pressure.polynomials(at.s, at.tau, DEGREE + 2)
         forces = np.concatenate([[p], smooth, moved, tests]) * at.weights
         k = 1 + len(smooth) + len(moved)
-        L = compliance.loads(at.x, at.y, forces.T) * used[:, None, None]
+        L = compliance.nodal_loads(at.x, at.y, forces.T) * used[:, None, None]
         known = height(at.x, at.y)
         total = forces.sum(axis=1)
         work = np.einsum("mit,mic->tc", L[:, :, k:], compliance.matrices @ L[:, :, :k])
