@@ -48,8 +48,8 @@ class EdgePatches:
     """The patches near the edge and the pressure in them.
 
     i, j : indices, (k,).  centre : f at the centres [Pa], (k,).  parts : means of f over PARTS x PARTS parts
-    [Pa], (k, PARTS^2), or over the whole patch, (k, 1).  share : integrated by parts, (k,).  misfit : largest distance by which the patches'
-    pressure misses f near the edge, in patches where f^2 is steepest.
+    [Pa], (k, PARTS^2), or over the whole patch, (k, 1).  share : integrated by parts, (k,).  misfit : largest
+    distance by which the patches' pressure misses f near the edge, in patches where f^2 is steepest.
     """
 
     i: Indices

@@ -140,7 +140,8 @@ def _below(axes: Any, result: CaseResult) -> None:
         axes.set(xlabel="$z / a_h$", ylabel="over $p_h$")
         title = "On the axis"
     axes.set_title(title, fontsize=9, loc="left")
-    axes.legend(frameon=False, fontsize=7, loc="best")
+    if axes.get_legend_handles_labels()[1]:
+        axes.legend(frameon=False, fontsize=7, loc="best")
 
 
 def _distances(axes: Any, result: CaseResult) -> None:

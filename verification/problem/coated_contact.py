@@ -147,8 +147,8 @@ class PrescribedLoad:
         _require_solid(self.coatings, self.substrate, self.friction)
 
 
-def keywords(problem: CoatedContact | PrescribedLoad) -> dict[str, Any]:
-    """The fields of ``problem`` by name, as keywords of a solver; no ``indenter`` of a sphere."""
+def keywords(problem: Any) -> dict[str, Any]:
+    """The fields of a problem by name, as keywords of a solver; no ``indenter`` of a sphere."""
     found = {f.name: getattr(problem, f.name) for f in fields(problem)}
     return found if found.get("indenter") else {k: v for k, v in found.items() if k != "indenter"}
 

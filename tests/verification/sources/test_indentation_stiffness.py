@@ -1,13 +1,12 @@
 """A sphere pressed deeper and deeper: its stiffness is that of a flat punch; formulas and limits of it."""
 
-from dataclasses import fields
-
 import numpy as np
 import pytest
 from layer_limits import spring_bed, squeezed_film, thick
 
 import fem_reference
 import semianalytic
+from verification.problem.coated_contact import keywords
 from verification.problem.loading_curve import LoadingCurve
 from verification.sources.loading_solution import Loading, exact_loading, loading
 from verification.sources.references.effective_modulus import (
@@ -24,9 +23,7 @@ CURVE = LoadingCurve(100.0, "contact_radius", (0.4, 1.0), LAYER, RIGID)
 
 
 def solver(method, **numerics):
-    return lambda contact: method.solve(
-        **{f.name: getattr(contact, f.name) for f in fields(contact)}, **numerics
-    )
+    return lambda contact: method.solve(**keywords(contact), **numerics)
 
 
 METHODS = {

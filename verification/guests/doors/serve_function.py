@@ -15,7 +15,7 @@ import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import fields, replace
+from dataclasses import replace
 from importlib import import_module
 from types import SimpleNamespace
 from typing import Any
@@ -35,7 +35,7 @@ from verification.guests.guest_protocol import (
     Square,
 )
 from verification.problem.array_types import Array, Coatings
-from verification.problem.coated_contact import FLAT, CoatedContact, NotClaimed, PrescribedLoad
+from verification.problem.coated_contact import FLAT, CoatedContact, NotClaimed, PrescribedLoad, keywords
 from verification.problem.line_profile import Line, Profile
 from verification.problem.quantity import DISPLACEMENTS, PEAKS, QUANTITIES, STRESSES
 from verification.running.json_records import plain
@@ -267,7 +267,7 @@ def _layers(coatings: list[Layer]) -> Coatings:
 
 def called(function: Callable[..., Any], problem: Load, parameter: dict[str, float]) -> Any:
     """``function`` called with the problem by keywords; one that it lacks must be nothing."""
-    given = {f.name: getattr(problem, f.name) for f in fields(problem)}
+    given = keywords(problem)
     accepted = inspect.signature(function).parameters
     if not any(p.kind is inspect.Parameter.VAR_KEYWORD for p in accepted.values()):
         for name, nothing in (("friction", 0.0), ("coatings", ()), ("ball", None)):
