@@ -183,7 +183,10 @@ def _ticking(bar: Progress, seconds: float) -> Iterator[None]:
 def _from_file(file: str, given: Sequence[Any]) -> Case:
     if any(one is not None for one in given):
         raise CommandError(f"{file}: give a file or the options of a problem, not both")
-    return read_case(path_of(file, default_cases(), SHIPPED))
+    case = read_case(path_of(file, default_cases(), SHIPPED))
+    if case.problem.indenter is not None:
+        raise CommandError(f"{file}: problem.indenter: solve answers for balls; try coatcheck run {file}")
+    return case
 
 
 def _from_options(

@@ -98,3 +98,10 @@ def test_a_ball_far_stiffer_than_the_flat_is_rigid(tmp_path):
     words = ["solve", "--load", "1 mN", "--substrate", "2 MPa, 0.49", "--friction", "0.1", "--ball"]
     elastic = coatcheck(*words, "10 mm, 210 GPa, 0.3", cwd=tmp_path)
     assert (elastic.returncode, elastic.stderr.count("rigid")) == (0, 1)
+
+
+def test_an_indenter_that_is_no_ball_is_refused_by_solve(tmp_path):
+    done = coatcheck("solve", "24_ellipse", cwd=tmp_path)
+    assert done.returncode == 2
+    assert "indenter" in done.stderr
+    assert not list(tmp_path.iterdir())
