@@ -58,24 +58,5 @@ def main(how: str, path: str) -> None:
         write_checked(Path(path), {"said": how})
 
 
-def copy(given: str, folder: str, path: str) -> None:
-    """Leave the content of the file ``given`` in ``folder`` and in the result."""
-    content = Path(given).read_text()
-    Path(folder).mkdir(parents=True)
-    Path(folder, "more.txt").write_text(content)
-    Path(Path(given).parent, "litter.txt").write_text("at no path of the command")
-    write_checked(Path(path), {"said": content})
-
-
-def kept_processes(dask_worker) -> list[int]:
-    """Numbers of the processes that a worker of Dask keeps for the next request."""
-    return [slot.process.pid for slot in dask_worker.plugins["coatcheck"].idle]
-
-
-def end_kept_processes(dask_worker) -> None:
-    """What a worker of Dask does when it ends."""
-    dask_worker.plugins["coatcheck"].teardown(dask_worker)
-
-
 if __name__ == "__main__":
     main(*sys.argv[1:])

@@ -18,8 +18,8 @@ from verification.commands.common.command_error import CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import PACKAGE
 from verification.commands.common.named_files import SHIPPED, path_of, require_distinct
-from verification.commands.common.shared_options import AsJson, Flag, Jobs, Quiet, Scheduler
-from verification.commands.common.task_progress import pool_of, run_info, solve, worker_count
+from verification.commands.common.shared_options import AsJson, Flag, Jobs, Quiet
+from verification.commands.common.task_progress import run_info, solve, worker_count
 from verification.commands.common.terminal import (
     STYLE,
     named_table,
@@ -113,7 +113,6 @@ def run(
     *cases: str,
     output: Folder = None,
     jobs: Jobs = None,
-    scheduler: Scheduler = None,
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> int:
@@ -131,18 +130,18 @@ def run(
             ones, for files those that were packed.
         output: Directory of report.html, report.json, junit.xml, badge.svg; GUEST/report unless given.
     """
-    pool = pool_of(jobs, 1.0, scheduler)
+    jobs = worker_count(jobs, 1.0)
     host = read_guest(guest)
     chosen = _chosen(cases or _packed(host))
     folder = output or host.folder / "report"
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
 
     def run_tasks(tasks: Sequence[Task[Any]], limit: float) -> list[Any]:
-        return solve(tasks, pool, limit, quiet or as_json)
+        return solve(tasks, jobs, limit, quiet or as_json)
 
     with locked(folder):
-        found = examined(host, chosen, folder, run_tasks, pool if isinstance(pool, int) else None)
-        info = run_info(shlex.join(["coatcheck", "guest", "run", guest, *cases]), started, pool)
+        found = examined(host, chosen, folder, run_tasks, jobs)
+        info = run_info(shlex.join(["coatcheck", "guest", "run", guest, *cases]), started, jobs)
         page = folder / "report.html"
         texts = {
             "junit.xml": junit_xml(found.results, info),

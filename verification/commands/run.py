@@ -28,15 +28,14 @@ from verification.commands.common.shared_options import (
     Quiet,
     RecordsFolder,
     Resume,
-    Scheduler,
     Strict,
 )
 from verification.commands.common.task_progress import (
     kept_results,
     kept_study,
-    pool_of,
     run_info,
     solve,
+    worker_count,
 )
 from verification.commands.common.terminal import print_error, print_json, print_warnings
 from verification.commands.common.terminal_bar import require_gmsh
@@ -64,7 +63,6 @@ def run(
     *cases: str,
     output: Output = Path("reports"),
     jobs: Jobs = None,
-    scheduler: Scheduler = None,
     time_limit: float = 600.0,
     baseline: BaselineFolder = BASELINE,
     records: RecordsFolder = RECORDS,
@@ -89,7 +87,7 @@ def run(
         fields: Also write the fields of each case, for ParaView and coatcheck view, into its folder fields.
         verbose: Print the seconds and iterations of every source as the cases finish.
     """
-    pool, silent = pool_of(jobs, time_limit, scheduler), quiet or as_json
+    jobs, silent = worker_count(jobs, time_limit), quiet or as_json
     chosen = chosen_cases(cases)
     for case in chosen:
         if isinstance(case, Case):
@@ -108,10 +106,10 @@ def run(
             tasks += [accuracy_study.task(output)] if not cases and accuracy is None else []
             tasks += [formula_errors.task(output)] if "published" in cases else []
             standing = cache(partial(_standing, chosen, records))
-            solved = solve(tasks, pool, time_limit, silent, verbose=verbose, meanwhile=standing)
+            solved = solve(tasks, jobs, time_limit, silent, verbose=verbose, meanwhile=standing)
             found = kept | {one.name: one for one in solved if isinstance(one, CaseResult)}
             results = [found[case.name] for case in chosen]
-            info = run_info(shlex.join(["coatcheck", "run", *cases]), started, pool)
+            info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs)
             evidence = standing()
             tests = evidence.self_tests
             beside = regression(

@@ -17,7 +17,7 @@ from rich.progress import TaskID
 from verification.commands.common.command_error import STOPPED, CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.named_files import path_of
-from verification.commands.common.shared_options import AsJson, Jobs, Output, Quiet, Scheduler, Strict
+from verification.commands.common.shared_options import AsJson, Jobs, Output, Quiet, Strict
 from verification.commands.common.terminal import (
     print_error,
     print_json,
@@ -47,7 +47,8 @@ class Options:
     output: Output = Path("reports/study")
     """Directory of the table, PLAN.parquet, and of the cache."""
     jobs: Jobs = None
-    scheduler: Scheduler = None
+    scheduler: str | None = None
+    """Address of a Dask scheduler, tcp://HOST:PORT, whose workers solve in place of this machine."""
     limit: int | None = None
     """Only the first so many points."""
     cross_check: bool = True
@@ -127,7 +128,7 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
     if chosen.cross_check:
         require_gmsh()
 
-    from verification.running.pool.dask_cluster import connected
+    from verification.study.dask_cluster import connected
     from verification.study.study_engine import run_study, table_path
 
     cluster = partial(connected, options.scheduler, jobs)

@@ -81,20 +81,18 @@ class Examined:
         ]
 
 
-def examined(
-    guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve, jobs: int | None = 1
-) -> Examined:
+def examined(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve, jobs: int = 1) -> Examined:
     """``guest`` examined on ``cases``, exact references and answers stored under ``folder``.
 
     solve : runs tasks with a time limit each, as ``run_tasks`` does.
-    jobs : programs side by side; None for a program of its own for each case.
+    jobs : programs side by side.
     """
     subjects = subjects_of(cases, guest)
     chosen = [case for case in subjects if guest.refusal(case.problem) is None]
     exams = dict(zip((case.name for case in chosen), _exams(chosen, folder, solve), strict=True))
     able = [case for case in chosen if exams[case.name].profiles]
     limit = guest.time_limit * len(guest.questions) + MARGIN
-    tasks = [ask_task(guest, case, folder, number % (jobs or len(able))) for number, case in enumerate(able)]
+    tasks = [ask_task(guest, case, folder, number % jobs) for number, case in enumerate(able)]
     try:
         answers = solve(tasks, limit)
     finally:

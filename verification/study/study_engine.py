@@ -18,8 +18,7 @@ from statistics import median
 from typing import Any
 
 from verification.running.checked_files import StoreError, locked
-from verification.running.pool.dask_cluster import REMEDY, Lost, answers
-from verification.running.pool.pool_task import SchedulerError
+from verification.study.dask_cluster import REMEDY, Lost, SchedulerError, answers
 from verification.study.solve_cache import Cache, code_version
 from verification.study.study_plan import Solve, Study
 from verification.study.study_point import answer, failed_rows, peak_memory, table_rows

@@ -11,9 +11,8 @@ import pytest
 from scheduler_by_hand import hand_started
 from synthetic_solves import CRASHING, FAILING, STUDY, made_up
 
-from verification.running.pool import dask_cluster as dask_cluster
-from verification.running.pool.dask_cluster import connected
-from verification.running.pool.pool_task import SchedulerError
+from verification.study import dask_cluster
+from verification.study.dask_cluster import SchedulerError, connected
 from verification.study.study_engine import run_study
 from verification.study.study_plan import parse_study
 from verification.study.study_point import answer

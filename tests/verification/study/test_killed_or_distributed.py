@@ -189,7 +189,7 @@ def test_memory_stays_flat_over_ten_thousand_points(tmp_path):
         f"sys.path.insert(0, {str(Path(__file__).parents[1])!r})\n"
         "from pathlib import Path\n"
         "from synthetic_solves import made_up\n"
-        "from verification.running.pool.dask_cluster import connected\n"
+        "from verification.study.dask_cluster import connected\n"
         "from verification.study.study_engine import run_study\n"
         "from verification.study.study_plan import read_study_file, shipped_studies\n"
         "if __name__ == '__main__':\n"

@@ -17,11 +17,10 @@ def with_exit_code(command: Callable[P, int]) -> Callable[P, int]:
     def wrapped(*args: P.args, **options: P.kwargs) -> int:
         from verification.cases.toml_file import CaseError
         from verification.running.checked_files import StoreError
-        from verification.running.pool.pool_task import SchedulerError
 
         try:
             return command(*args, **options)
-        except (CommandError, CaseError, StoreError, SchedulerError, OSError) as error:
+        except (CommandError, CaseError, StoreError, OSError) as error:
             print_error(str(error))
             return error.code if isinstance(error, CommandError) else BAD_INPUT
 

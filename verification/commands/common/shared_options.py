@@ -11,9 +11,6 @@ from cyclopts import Parameter
 _BASELINE_HELP = "Directory of the baseline; that of the package unless given."
 _RECORDS_HELP = "Directory of the credibility records; that of the package unless given."
 _JOBS_HELP = "Processes side by side; all cores unless given."
-_SCHEDULER_HELP = (
-    "Address of a Dask scheduler, tcp://HOST:PORT, whose workers solve in place of this machine."
-)
 
 Flag = Annotated[bool, Parameter(negative="")]
 Output = Annotated[Path, Parameter(name=["--output", "-o"])]
@@ -22,7 +19,6 @@ BaselineFolder = Annotated[
 ]
 RecordsFolder = Annotated[Path, Parameter(help=_RECORDS_HELP, show_default=False)]
 Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help=_JOBS_HELP)]
-Scheduler = Annotated[str | None, Parameter(name="--scheduler", help=_SCHEDULER_HELP)]
 Resume = Annotated[bool, Parameter(negative="", help="Keep the valid results in the output directory.")]
 Quiet = Annotated[bool, Parameter(name=["--quiet", "-q"], negative="", help="Print nothing but errors.")]
 Strict = Annotated[

@@ -2,7 +2,6 @@
 
 import datetime
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
@@ -19,14 +18,11 @@ from verification.credibility.accuracy_study import AccuracyStudy
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.case_tasks import kept_result
 from verification.running.checked_files import StoreError
-from verification.running.pool.dask_cluster import Cluster
 from verification.running.pool.pool_task import Task
 from verification.running.pool.process_pool import run_tasks
 from verification.running.provenance import commit, cores, hardware, versions
 
 T = TypeVar("T")
-
-Pool = int | Cluster  # so many processes on this machine, or the workers of a scheduler
 
 
 def worker_count(jobs: int | None, time_limit: float) -> int:
@@ -35,16 +31,6 @@ def worker_count(jobs: int | None, time_limit: float) -> int:
     if jobs < 1 or not time_limit > 0:
         raise CommandError(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
     return jobs
-
-
-def pool_of(jobs: int | None, time_limit: float, scheduler: str | None) -> Pool:
-    """Where tasks run. Raises CommandError for a number that is not positive, jobs beside a scheduler."""
-    here = worker_count(jobs, time_limit)
-    if scheduler is None:
-        return here
-    if jobs is not None:
-        raise CommandError(f"--jobs = {jobs}: the workers of --scheduler decide; leave one of both out")
-    return Cluster(scheduler)
 
 
 def kept_results(
@@ -74,7 +60,7 @@ def kept_study(output: Path) -> AccuracyStudy | None:
 
 def solve(
     tasks: Sequence[Task[T]],
-    pool: Pool,
+    jobs: int,
     time_limit: float,
     silent: bool,
     *,
@@ -105,9 +91,9 @@ def solve(
                 if verbose:
                     console.print(escape(_sources(result)), style="dim", highlight=False)
 
-        run = pool.run if isinstance(pool, Cluster) else partial(run_tasks, jobs=pool)
-        return run(
+        return run_tasks(
             tasks,
+            jobs=jobs,
             time_limit=time_limit,
             started=started,
             finished=finished,
@@ -127,15 +113,14 @@ def _sources(result: CaseResult) -> str:
     return "\n".join(lines)
 
 
-def run_info(command: str, started: datetime.datetime, pool: Pool) -> RunInfo:
-    """Command, time, commit, machines and versions of the run that ends now."""
-    jobs, machines = (pool.jobs, pool.machines) if isinstance(pool, Cluster) else (pool, set())
+def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
+    """Command, time, commit, machine and versions of the run that ends now."""
     return RunInfo(
         command=command,
         started=started.isoformat(timespec="seconds"),
         seconds=(datetime.datetime.now(datetime.UTC) - started).total_seconds(),
         jobs=jobs,
         commit=commit(),
-        machine=" and ".join(sorted(machines)) or hardware(),
+        machine=hardware(),
         versions=versions(),
     )

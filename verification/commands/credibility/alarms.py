@@ -19,9 +19,8 @@ from verification.commands.common.shared_options import (
     Quiet,
     RecordsFolder,
     Resume,
-    Scheduler,
 )
-from verification.commands.common.task_progress import kept_results, pool_of, run_info, solve
+from verification.commands.common.task_progress import kept_results, run_info, solve, worker_count
 from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
 from verification.commands.common.terminal_bar import require_gmsh
 from verification.credibility.false_alarms import counted
@@ -44,7 +43,6 @@ def alarms(
     record: Flag = False,
     records: RecordsFolder = RECORDS,
     jobs: Jobs = None,
-    scheduler: Scheduler = None,
     time_limit: float = 600.0,
     resume: Resume = False,
     quiet: Quiet = False,
@@ -63,7 +61,7 @@ def alarms(
         record: Store the record as RECORDS/alarms.json, for the credibility page of every report.
         time_limit: Seconds one problem may take before it is stopped and counted as alarms.
     """
-    pool = pool_of(jobs, time_limit, scheduler)
+    jobs = worker_count(jobs, time_limit)
     if count < 1 or seed < 0:
         raise CommandError(f"--count = {count}, --seed = {seed}; only the seed may be zero, none negative")
     if record:
@@ -78,9 +76,9 @@ def alarms(
         cases = [_case(seed, number, output) for number in range(count)]
         kept = kept_results(cases, output) if resume else {}
         tasks = [case_task(case, output) for case in cases if case.name not in kept]
-        solved = {r.name: r for r in solve(tasks, pool, time_limit, quiet or as_json)}
+        solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
         results = [kept.get(case.name) or solved[case.name] for case in cases]
-        info = run_info(f"coatcheck alarms --count {count} --seed {seed}", started, pool)
+        info = run_info(f"coatcheck alarms --count {count} --seed {seed}", started, jobs)
         page = write_report(Material(results, info), output, junit_xml(results, info))
         found = counted(results, seed, info)
         stored = write_record(records, found) if record else None

@@ -20,14 +20,12 @@ from verification.commands.common.shared_options import (
     Quiet,
     RecordsFolder,
     Resume,
-    Scheduler,
 )
 from verification.commands.common.task_progress import (
-    Pool,
     kept_results,
-    pool_of,
     run_info,
     solve,
+    worker_count,
 )
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
 from verification.commands.common.terminal_bar import require_gmsh
@@ -48,7 +46,6 @@ def faults(
     record: Flag = False,
     records: RecordsFolder = RECORDS,
     jobs: Jobs = None,
-    scheduler: Scheduler = None,
     time_limit: float = 300.0,
     resume: Resume = False,
     quiet: Quiet = False,
@@ -70,7 +67,7 @@ def faults(
         record: Store the matrix of all faults as RECORDS/faults.json, for the credibility page of a report.
         time_limit: Seconds one fault may take before it is stopped and counted as not tried.
     """
-    pool = pool_of(jobs, time_limit, scheduler)
+    jobs = worker_count(jobs, time_limit)
     from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS, chosen
     from verification.evidence.fault_record import GROUPS
 
@@ -98,13 +95,13 @@ def faults(
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):
-        solve_clean(wanted, output, pool, time_limit, resume, quiet or as_json)
+        solve_clean(wanted, output, jobs, time_limit, resume, quiet or as_json)
         kept = {f.name: t for f in wanted if resume and (t := fault_campaign.kept_trial(f, output))}
         # the long ones first, so that no core waits at the end
         order = sorted((f for f in wanted if f.name not in kept), key=fault_campaign.cost, reverse=True)
         trials = [fault_campaign.trial_task(fault, output) for fault in order]
-        fresh = {trial.fault: trial for trial in solve(trials, pool, time_limit, quiet or as_json)}
-        info = run_info("coatcheck faults", started, pool)
+        fresh = {trial.fault: trial for trial in solve(trials, jobs, time_limit, quiet or as_json)}
+        info = run_info("coatcheck faults", started, jobs)
         found = fault_campaign.record_of(
             [kept.get(f.name) or fresh[f.name] for f in wanted],
             started=info.started,
@@ -126,7 +123,7 @@ def faults(
 
 
 def solve_clean(
-    wanted: Sequence["Fault"], output: Path, pool: Pool, time_limit: float, resume: bool, silent: bool
+    wanted: Sequence["Fault"], output: Path, jobs: int, time_limit: float, resume: bool, silent: bool
 ) -> None:
     """Solve the cases of ``wanted`` without a fault; ends the command where that fails."""
     from verification.credibility.faults import fault_campaign
@@ -135,7 +132,7 @@ def solve_clean(
     cases = fault_campaign.clean_cases(wanted)
     clean = kept_results(cases, folder) if resume else {}
     tasks = [case_task(case, folder) for case in cases if case.name not in clean]
-    if reason := fault_campaign.failed_source([*clean.values(), *solve(tasks, pool, time_limit, silent)]):
+    if reason := fault_campaign.failed_source([*clean.values(), *solve(tasks, jobs, time_limit, silent)]):
         raise no_result(reason)
 
 

@@ -11,7 +11,7 @@ from verification.cases.case_file import Case, default_cases, read_case
 from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS
 from verification.credibility.faults.fault_outcome import row_of
 from verification.credibility.faults.fault_planting import Fault
-from verification.credibility.faults.fault_trial import Trial, clean_path, try_fault
+from verification.credibility.faults.fault_trial import Trial, try_fault
 from verification.evidence.fault_record import Record
 from verification.running.case_result import CaseResult
 from verification.running.checked_files import StoreError, read_checked, write_checked
@@ -53,14 +53,7 @@ def trial_task(fault: Fault, output: Path) -> Task[Trial]:
     def failed(reason: str, seconds: float) -> Trial:
         return Trial(fault.name, seconds=seconds, failure=reason)
 
-    return Task(
-        fault.name,
-        partial(main, fault, clean, path),
-        path,
-        _trial,
-        failed,
-        needs=lambda: [clean_path(clean, name) for name in fault.cases],
-    )
+    return Task(fault.name, partial(main, fault, clean, path), path, _trial, failed)
 
 
 def kept_trial(fault: Fault, output: Path) -> Trial | None:

@@ -1,7 +1,5 @@
 """A guest asked about one case at every level, as a task of the pool."""
 
-import os
-from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -83,20 +81,7 @@ def ask_task(guest: Guest, case: Subject, folder: Path, process: int = 0) -> Tas
         partial(_none, case),
         cost=1.0 + len(case.problem.coatings),
         together=process,
-        needs=lambda: (exam, *_files(guest, folder)),
     )
-
-
-def _files(guest: Guest, output: Path) -> Iterator[Path]:
-    """The files of ``guest``, hidden ones and results in ``output`` left out."""
-    for place, folders, names in os.walk(guest.folder):
-        here = Path(place)
-        folders[:] = [
-            name
-            for name in folders
-            if not (name.startswith(".") or name == "__pycache__" or here / name == output.resolve())
-        ]
-        yield from (here / name for name in names if (here / name).is_file())
 
 
 def _read(data: dict[str, Any]) -> Replies:

@@ -1,7 +1,7 @@
-"""Work for another process, on this machine or on a worker of a scheduler."""
+"""Work for another process: a task, and the order in which tasks run."""
 
 from collections import deque
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -13,22 +13,16 @@ T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 
 
-class SchedulerError(Exception):
-    """A scheduler or its workers that cannot be used; the message says why."""
-
-
 @dataclass(frozen=True)
 class Task(Generic[T_co]):
     """Work for another process, which leaves a checked file at ``path``.
 
-    work : a function of a module with its arguments. Arguments that are a Path are files or directories; on
-        another machine they lie elsewhere, and what the process writes there is sent back.
+    work : a function of a module with its arguments.
     read : from what the file holds to the result.
     failed : the result of a process that left none, from the reason and its seconds.
     cost : estimate, of any unit; the costliest tasks start first.
     together : tasks of equal value other than None run one after the other in one process, so that they can
         share what they compute. Where one fails, the next starts in a process of its own.
-    needs : the files that it reads, which are sent to another machine.
     ahead : modules that all tasks of a process import once.
     """
 
@@ -39,7 +33,6 @@ class Task(Generic[T_co]):
     failed: Callable[[str, float], T_co]
     cost: float = 0.0
     together: Hashable = None
-    needs: Callable[[], Iterable[Path]] = tuple
     ahead: tuple[str, ...] = ()
 
     def result(self, seconds: float) -> T_co:
@@ -48,16 +41,6 @@ class Task(Generic[T_co]):
             return self.read(read_checked(self.path))
         except (StoreError, ValueError, KeyError, TypeError, AttributeError) as error:
             return self.failed(" ".join(str(error).split()), seconds)
-
-
-def with_paths(work: partial[None], place: Callable[[Path], Path]) -> partial[None]:
-    """``work`` with ``place(path)`` for each argument that is a Path."""
-    return partial(work.func, *(place(one) if isinstance(one, Path) else one for one in work.args))
-
-
-def paths_of(work: partial[None]) -> set[Path]:
-    """The files and directories among the arguments of ``work``."""
-    return {one for one in work.args if isinstance(one, Path)}
 
 
 Group = deque[tuple[int, Task[T]]]  # tasks of one process, each with its number
