@@ -40,11 +40,6 @@ class CaseDrift:
         """The largest change of a value over its scale."""
         return max((d.change for d in self.drifts if d.change is not None), default=None)
 
-    @property
-    def departure(self) -> float | None:
-        """The largest change of a value over what is allowed on any machine."""
-        return max((d.departure for d in self.drifts if d.departure is not None), default=None)
-
     def count(self, state: State) -> int:
         """Number of numbers in ``state``."""
         return sum(

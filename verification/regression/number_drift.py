@@ -80,7 +80,6 @@ class Drift:
     """Change of one profile: of its ``count`` numbers ``moved`` have changed.
 
     change : the largest change of a value over its scale, None where there are not two values.
-    departure : the largest change of a value over what is allowed on any machine; above 1 it has left.
     message : what changed, empty where nothing did.   beyond : changed by more than any machine explains.
     """
 
@@ -93,7 +92,6 @@ class Drift:
     change: float | None = None
     message: str = ""
     beyond: bool = False
-    departure: float | None = None
 
 
 def measured(result: CaseResult) -> tuple[Numbers, ...]:
@@ -153,7 +151,7 @@ def drift(then: Numbers, now: Numbers, edges: Sequence[float] = ()) -> Drift:
     found = Drift(*then.key, state, then.count, min(count, then.count), None, "; ".join(messages), beyond)
     if shift > SHIFT:
         return found
-    return replace(found, change=_largest(change), departure=_largest(departure))
+    return replace(found, change=_largest(change))
 
 
 def _largest(change: Array) -> float:

@@ -14,7 +14,6 @@ from synthetic_results import INFO, STEEL, contact, result_of
 from verification.judging.verdict import Outcome
 from verification.regression.number_drift import State
 from verification.regression.run_comparison import compare_runs, comparison_page
-from verification.regression.run_history import history, history_page
 from verification.report.report_material import Material
 from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, RunInfo
@@ -141,10 +140,8 @@ def test_the_command_says_it_by_code_by_words_and_as_a_page(tmp_path):
 def test_the_page_fits_a_phone(tmp_path):
     path = tmp_path / "c.html"
     path.write_text(comparison_page(compare_runs(run_of(GOOD), run_of(WRONG, replace(GOOD, name="new")))))
-    past = tmp_path / "h.html"
-    past.write_text(history_page(history([run_of(GOOD), run_of(WRONG)], None)))
     with page(tmp_path / "profile") as opened:
-        for shown, width in ((path, 390), (path, 1360), (past, 390), (past, 1360)):
+        for shown, width in ((path, 390), (path, 1360)):
             opened.open(shown, width=width)
             sticking = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
             assert opened.evaluate(sticking) == 0
