@@ -51,8 +51,6 @@ from verification.running.case_tasks import case_task, kept_result
 from verification.running.checked_files import StoreError, locked
 from verification.running.pool.pool_task import Task
 from verification.running.stored_fields import read_planes
-from verification.study import formula_errors
-from verification.study.formula_errors import EffectiveStudy
 
 if TYPE_CHECKING:
     from verification.report.report_material import Evidence
@@ -100,11 +98,10 @@ def run(
         with locked(output):
             kept = kept_results(chosen, output, fields=fields) if resume else {}
             accuracy = kept_study(output) if resume and not cases else None
-            tasks: list[Task[CaseResult | AccuracyStudy | EffectiveStudy]] = [
+            tasks: list[Task[CaseResult | AccuracyStudy]] = [
                 case_task(case, output, fields=fields) for case in chosen if case.name not in kept
             ]
             tasks += [accuracy_study.task(output)] if not cases and accuracy is None else []
-            tasks += [formula_errors.task(output)] if "published" in cases else []
             standing = cache(partial(_standing, chosen, records))
             solved = solve(tasks, jobs, time_limit, silent, verbose=verbose, meanwhile=standing)
             found = kept | {one.name: one for one in solved if isinstance(one, CaseResult)}
@@ -135,7 +132,6 @@ def run(
             evidence = replace(
                 evidence,
                 accuracy=accuracy,
-                formulas=next((one for one in solved if isinstance(one, EffectiveStudy)), None),
                 baseline=beside,
             )
             page = _write(results, info, evidence, output, junit)

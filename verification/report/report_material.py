@@ -32,8 +32,6 @@ from verification.running.json_records import decode
 from verification.running.provenance import changed_since, machine
 from verification.running.stored_fields import read_planes
 from verification.sampling.stress_plane import Plane
-from verification.study import formula_errors
-from verification.study.formula_errors import EffectiveStudy
 
 T = TypeVar("T")
 _METHODS = ("semianalytic", "fem_reference", "verification/sources")
@@ -61,7 +59,6 @@ class Evidence:
     orders, parts : manufactured solutions and imports, measured.
     faults, alarms, mutants, enclosures : read from records.
     accuracy : errors of the methods over resolution.
-    formulas : effective-modulus formulas.
     baseline : the change of each number since the baseline.
     maps : what the assumptions of the model cost.   models : the same of each case, by its name.
     older : names of the records that were made before the code they judge changed, see ``JUDGED``.
@@ -76,7 +73,6 @@ class Evidence:
     accuracy: AccuracyStudy | None = None
     baseline: Regression | None = None
     self_tests: tuple[SelfTest, ...] = ()
-    formulas: EffectiveStudy | None = None
     mutants: MutantRecord | None = None
     enclosures: EnclosureRecord | None = None
     maps: AssumptionMaps | None = None
@@ -229,17 +225,9 @@ def stored_material(folder: Path) -> tuple[Material, bool]:
         machine=machine(),
         versions={},
     )
-    measured = {
-        name: _measured(study, folder)
-        for name, study in (("accuracy", accuracy_study), ("formulas", formula_errors))
-    }
-    return Material(results, info, Evidence(**measured), planes), False
-
-
-def _measured(study: Any, folder: Path) -> Any:
-    """The result of a study that a run stored in ``folder``; None where it has none."""
-    path = study.task(folder).path
-    return study.from_json(read_checked(path)) if path.exists() else None
+    path = accuracy_study.task(folder).path
+    accuracy = accuracy_study.from_json(read_checked(path)) if path.exists() else None
+    return Material(results, info, Evidence(accuracy=accuracy), planes), False
 
 
 def _last_report(folder: Path) -> dict[str, Any]:

@@ -27,7 +27,6 @@ from verification.report.credibility import (
 from verification.report.report_material import Material
 from verification.report.sections import (
     accuracy_section,
-    effective_section,
     family_section,
     invariants_section,
     overview_section,
@@ -56,7 +55,6 @@ SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
     ("Results", overview_section.section),
     ("Results", published_section.section),
     ("Results", family_section.section),
-    ("Results", effective_section.section),
     ("Evidence", credibility_statement.section),
     ("Evidence", model_section.section),
     ("Evidence", accuracy_section.section),

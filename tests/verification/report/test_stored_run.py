@@ -21,8 +21,6 @@ from verification.running.checked_files import write_checked
 from verification.running.stored_fields import plane_path, write_plane
 from verification.sampling.stress_plane import sample_plane
 from verification.sources.references.hertz import Hertz
-from verification.study.formula_errors import EffectiveStudy
-from verification.study.formula_errors import to_json as effective_json
 
 RESULTS = [
     result_of(contact((2 * STEEL[0], 0.3, 1.0)), name="z_first", text="the case file", points=11),
@@ -46,7 +44,6 @@ def run(tmp_path):
         accuracy=study(),
         baseline=regression(RESULTS, baseline, "elsewhere", INFO, whole=True),
         self_tests=(SelfTest("reader", "reads", True, "1 answer"),),
-        formulas=EffectiveStudy(failure="its process <died>"),
     )
     # As a run has them: each result read back from its file, in the order of the command.
     results = material.results[::-1]
@@ -58,7 +55,7 @@ def run(tmp_path):
 def test_the_report_of_a_stored_run_is_that_of_the_run(run, tmp_path, monkeypatch, capsys):
     names = ("report.html", "report.json", "junit.xml")
     before = {name: (run / name).read_bytes() for name in names}
-    for mark in (b'id="baseline"', b'id="credibility"', b'id="effective-modulus"', b'id="self-tests"'):
+    for mark in (b'id="baseline"', b'id="credibility"', b'id="self-tests"'):
         assert mark in before["report.html"]
     (tmp_path / "empty").mkdir()
     monkeypatch.chdir(tmp_path / "empty")
@@ -88,10 +85,6 @@ def test_a_case_solved_since_has_no_evidence_of_the_run(run):
     material, whole = stored_material(run)
     assert not whole
     assert material.evidence.baseline is None
-    assert material.evidence.formulas is None
-    formulas = EffectiveStudy(failure="stopped")
-    write_checked(run / "effective-modulus.json", effective_json(formulas))
-    assert stored_material(run)[0].evidence.formulas.failure == "stopped"
     assert "stopped" in material.info.command
 
 

@@ -1,4 +1,4 @@
-"""A sphere pressed deeper and deeper: its stiffness is that of a flat punch; formulas and limits of it."""
+"""A sphere pressed deeper and deeper: its stiffness is that of a flat punch, with the limits of it."""
 
 import numpy as np
 import pytest
@@ -9,13 +9,6 @@ import semianalytic
 from verification.problem.coated_contact import keywords
 from verification.problem.loading_curve import LoadingCurve
 from verification.sources.loading_solution import Loading, exact_loading, loading
-from verification.sources.references.effective_modulus import (
-    FORMULAS,
-    I0,
-    I1,
-    perriot_barthel,
-    perriot_barthel_x0,
-)
 from verification.sources.references.flat_punch import pressed
 
 LAYER, RIGID = ((1.0, 0.4, 1.0),), (1e9, 0.3)
@@ -97,33 +90,19 @@ def test_a_curve_without_meaning_is_refused(wrong):
         LoadingCurve(**(arguments | wrong))
 
 
-@pytest.mark.parametrize("formula", FORMULAS, ids=lambda formula: formula.name)
-def test_formulas_end_at_film_and_substrate(formula):
-    film, base = (3.0, 0.2), (1.0, 0.4)
-    thin, thick_film = formula.modulus(film, base, np.array([1e-7, 1e7]))
-    assert thin == pytest.approx(1.0 / (1 - 0.4**2), rel=1e-5)
-    assert thick_film == pytest.approx(3.0 / (1 - 0.2**2), rel=1e-5)
-    same = formula.modulus(base, base, np.array([0.1, 1.0, 10.0]))
-    # Hay and Crawford's F, fitted to stiff films, stays where there is no film at all.
-    off = 0.02 if formula.name.startswith("Hay") else 1e-12
-    assert same == pytest.approx(1.0 / (1 - 0.4**2), rel=off)
-
-
-def test_perriot_and_barthel_end_at_film_and_substrate():
-    thin, thick_film = perriot_barthel((3.0, 0.3), (1.0, 0.3), np.array([1e-8, 1e8]), 1.2)
-    assert (thin, thick_film) == pytest.approx((1 / 0.91, 3 / 0.91), rel=1e-6)
-    assert perriot_barthel_x0(1.0) == pytest.approx(10**-0.093)
-    assert [perriot_barthel_x0(ratio) for ratio in (0.1, 10.0)] == pytest.approx([10**-0.835, 10**0.749])
+def gao_weight(xi, nu):
+    """First-order weight of a film's shear modulus: Gao, Chiu, Lee (1992)."""
+    edge = (1 - 2 * nu) * xi * np.log1p(1 / xi**2) - xi / (1 + xi**2)
+    return 2 / np.pi * np.arctan(xi) + edge / (2 * np.pi * (1 - nu))
 
 
 @pytest.mark.parametrize("nu", [0.1, 0.3, 0.5])
-def test_gao_chiu_lee_1992_weight_is_the_first_derivative_of_the_exact_stiffness(nu):
+def test_weight_of_gao_chiu_lee_1992_is_the_first_derivative_of_the_exact_stiffness(nu):
     step = 1e-4
     for h in (0.3, 1.0, 3.0):
         up, down = (np.log((1 + s) * pressed(1.0, ((1 + s, nu, h),), (1.0, nu)).kappa) for s in (step, -step))
         # Central differences leave out the square of the step.
-        assert (up - down) / (2 * step) == pytest.approx(float(I0(np.array(h), nu)), abs=2 * step**2)
-    assert I1(np.array([1e-9, 1e9])) == pytest.approx([0, 1], abs=1e-6)
+        assert (up - down) / (2 * step) == pytest.approx(gao_weight(h, nu), abs=2 * step**2)
 
 
 def test_thin_and_thick_limits_are_approached():
