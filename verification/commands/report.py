@@ -1,15 +1,15 @@
-"""coatcheck report: write the report of a stored run again, or print it."""
+"""coatcheck report: write the report of a stored run again."""
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated
 
 from cyclopts import Parameter
 
-from verification.commands.common.command_error import CommandError, no_result
+from verification.commands.common.command_error import CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import BASELINE, RECORDS, nearest_run, within_package
-from verification.commands.common.shared_options import AsJson, Flag, Quiet
+from verification.commands.common.shared_options import AsJson, Quiet
 from verification.commands.common.terminal import print_files
 from verification.credibility.self_tests import self_tests
 from verification.regression.baseline_change import regression
@@ -24,11 +24,8 @@ def report(
     folder: Path = Path("reports"),
     /,
     *,
-    pdf: Flag = False,
-    paper: Literal["A4", "Letter"] = "A4",
     baseline: Annotated[Path | None, Parameter(name=["--baseline", "-b"])] = None,
     records: Path | None = None,
-    time_limit: float = 300.0,
     quiet: Quiet = False,
     as_json: AsJson = False,
 ) -> int:
@@ -36,13 +33,9 @@ def report(
 
     Args:
         folder: Directory of the run.
-        pdf: Also print the page to report.pdf there, through an installed Chromium or Chrome.
-        paper: Size of its sheets.
         baseline: Directory of a baseline to compare with instead of the run's own comparison.
         records: Directory of credibility records to show instead of those stored with the run.
-        time_limit: Seconds that each of two prints may take.
     """
-    from verification.page.pdf_file import NoBrowser, printed
     from verification.report.report_material import gather, stored_material
     from verification.report.report_page import write_report
 
@@ -66,10 +59,6 @@ def report(
             messages = {test.name: "" if test.passed else test.found for test in evidence.self_tests}
             junit = junit_xml(material.results, material.info, evidence.baseline, messages)
             files = [write_report(replace(material, evidence=evidence), folder, junit)]
-            if pdf:
-                files.append(printed(files[0], folder / "report.pdf", time_limit, paper))
-    except NoBrowser as error:
-        raise no_result(str(error)) from None
     except ValueError as error:
         raise CommandError(str(error)) from None
     print_files(files, as_json=as_json, quiet=quiet)

@@ -20,7 +20,6 @@ from verification.cases.case_file import shaped_cases, shipped_cases
 from verification.cases.published_file import published_cases
 from verification.commands.compare import compare
 from verification.commands.shipped.list_cases import list_cases
-from verification.page.pdf_file import NoBrowser, browser, printed
 from verification.report.report_material import Material
 from verification.report.report_page import report_json
 from verification.running.case_result import to_json
@@ -249,40 +248,6 @@ def test_a_damaged_case_is_named_and_the_page_left_alone(stored, capsys, spoiled
     assert "first.json" in complaint
     assert len(complaint.splitlines()) == 1
     assert not (stored / "report.html").exists()
-
-
-def test_printing_without_a_browser_is_one_sentence(stored, capsys, environment):
-    environment(PATH="")
-    code, _, complaint = asked(capsys, "report", stored, "--pdf")
-    assert code == 3
-    assert "--pdf" in complaint
-    assert len(complaint.splitlines()) == 1
-    assert (stored / "report.html").exists()
-
-
-@pytest.mark.parametrize(
-    ("script", "time_limit", "said"),
-    [("exit 7", 60.0, "code 7"), ("exec sleep 60", 0.2, "0.2")],
-)
-def test_a_browser_that_fails_is_one_sentence(tmp_path, environment, script, time_limit, said):
-    program = tmp_path / "bin" / "chromium"
-    program.parent.mkdir()
-    program.write_text(f"#!/bin/sh\n{script}\n")
-    program.chmod(0o755)
-    environment(PATH=f"{program.parent}:/usr/bin:/bin")
-    (tmp_path / "page.html").write_text("<p>a page</p>")
-    with pytest.raises(NoBrowser, match=said):
-        printed(tmp_path / "page.html", tmp_path / "page.pdf", time_limit)
-    assert not (tmp_path / "page.pdf").exists()
-
-
-@pytest.mark.skipif(browser() is None, reason="no Chromium on this machine")
-def test_a_page_is_printed(tmp_path):
-    page = tmp_path / "page.html"
-    page.write_text("<!DOCTYPE html><title>x</title><p>Printed.")
-    data = printed(page, tmp_path / "page.pdf", 120.0).read_bytes()
-    assert data.startswith(b"%PDF-")
-    assert data.rstrip().endswith(b"%%EOF")
 
 
 @pytest.mark.parametrize(

@@ -39,25 +39,6 @@ def test_a_folder_with_something_else_is_not_written_to(tmp_path):
         manual_build.build(tmp_path)
 
 
-def test_the_page_to_be_printed_loads_no_file_and_lists_its_chapters(tmp_path):
-    (tmp_path / "a.css").write_text('@font-face { src: url("a.woff2"); }')
-    (tmp_path / "a.woff2").write_bytes(b"font")
-    (tmp_path / "a.svg").write_text("<svg/>")
-    (tmp_path / "index.html").write_text(
-        '<link rel="stylesheet" type="text/css" href="a.css?v=1" /><script src="a.js"></script>'
-        '<section class="a" id="one">\n<h2>First <em>chapter</em><a class="headerlink" href="#one">x</a></h2>'
-        '<img alt="" src="a.svg" />'
-    )
-    page = manual_build.with_contents(manual_build.in_one_file(tmp_path / "index.html"))
-    assert re.findall(r'(?:src|href)="([^"]+)"', page) == [
-        "#heading-0",
-        "#one",
-        "data:image/svg+xml;base64,PHN2Zy8+",
-    ]
-    assert "data:font/woff2;base64,Zm9udA==" in page
-    assert '<a href="#heading-0"><span>First chapter</span><b></b></a>' in page
-
-
 def test_every_block_of_the_manual_has_content():
     empty = [name for name, block in BLOCKS.items() if name not in SLOW and not block().strip()]
     assert empty in ([], ["more_pages"])  # no page is added beyond those that the index names

@@ -7,7 +7,6 @@ from headless import Page, browser, page
 from synthetic_results import INFO, showcase
 from synthetic_study import study
 
-from verification.page.pdf_file import page_numbers, printed, with_numbers
 from verification.report.report_material import Evidence, Material
 from verification.report.report_page import write_report
 from verification.sampling.stress_plane import sample_plane
@@ -213,18 +212,3 @@ def test_without_the_script_and_on_paper_every_page_shows(chromium: Page, report
     chromium.call("Emulation.setEmulatedMedia", media="")
     chromium.evaluate("document.documentElement.classList.remove('js')")
     assert chromium.evaluate(shown) == count
-
-
-@pytest.mark.slow
-def test_a_case_is_one_sheet_and_the_contents_have_its_number(report, tmp_path):
-    pdf = printed(report, tmp_path / "report.pdf", 120.0).read_bytes()
-    numbers = page_numbers(pdf)
-    cases = sorted(number for name, number in numbers.items() if re.fullmatch(r"case-[a-z0-9-]*", name))
-    assert numbers["first"] == 1
-    # What agrees; a case that fails has more figures.
-    for name, following in (("thin", "thick"), ("dlc-chromium-steel", "mos2")):
-        assert numbers[f"case-{following}"] == numbers[f"case-{name}"] + 1
-    assert cases[-1] < numbers["cases"]
-    text = with_numbers(report.read_text(encoding="utf-8"), numbers)
-    assert f"<b>{numbers['case-thick']}</b>" in text
-    assert page_numbers(b"not a PDF") == {}
