@@ -14,7 +14,6 @@ from verification.credibility.exact_errors import (
     film_errors,
     turned_ellipse,
 )
-from verification.credibility.parameter_sweeps import Stated, Sweep, study
 from verification.credibility.refinement_studies import (
     Refinement,
     failure_message,
@@ -30,13 +29,11 @@ from verification.running.checked_files import write_checked
 from verification.running.json_records import RecordFile, decode
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import commit, versions
-from verification.sources.method_sources import sharing_pressure
 from verification.sources.source_registry import solvers
 
-SCHEMA = "coatcheck-accuracy/3"
+SCHEMA = "coatcheck-accuracy/4"
 # The error of the corrected edge is followed to the grid in use.
 FINE = (41, 49, 65, 97, 129, 257)
-KEPT = 4  # solutions of a method, some 100 MB each of the finest meshes
 STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL)
 COATED = CoatedContact(10e-3, 20.0, ((4 * STEEL[0], 0.3, BARE.a_h),), STEEL)
@@ -51,7 +48,7 @@ T = TypeVar("T")
 class AccuracyStudy:
     """Errors of both methods with provenance; ``failures`` are messages on what could not be computed.
 
-    conversions, sweeps, stated : of the coated solid.   discs : under given pressures.   ellipses : contacts
+    conversions : of the coated solid.   discs : under given pressures.   ellipses : contacts
     that are no discs.
     commit : None outside a checkout.
     """
@@ -62,8 +59,6 @@ class AccuracyStudy:
     seconds: float
     commit: str | None
     versions: dict[str, str]
-    sweeps: tuple[Sweep, ...] = ()
-    stated: tuple[Stated, ...] = ()
     discs: tuple[ExactError, ...] = ()
     ellipses: tuple[ExactError, ...] = ()
 
@@ -85,8 +80,7 @@ def measure() -> AccuracyStudy:
             failures.append(f"{part}: {failure_message(error)}")
             return otherwise
 
-    # Sweeps pass through numerics of the refinement studies, and of one another.
-    available = {name: sharing_pressure(solve, KEPT) for name, solve in solvers(COATED).items()}
+    available = solvers(COATED)
     grid = partial(refined_grid, solve=available["semianalytic"])
     mesh = partial(refined_mesh, COATED, solid="coated", solve=available["fem_reference"])
     refinements = (
@@ -102,13 +96,8 @@ def measure() -> AccuracyStudy:
     conversions: tuple[ConversionError, ...] = attempt(
         "conversions of the influence coefficients", lambda: conversion_errors(COATED), ()
     )
-    nothing: tuple[tuple[Sweep, ...], tuple[Stated, ...]] = ((), ())
-    sweeps, stated = attempt(
-        "uncertainty by parameter", lambda: study(COATED, "coated", available=available), nothing
-    )
     discs: tuple[ExactError, ...] = attempt("discs", lambda: discs_of(), ())
     ellipses: tuple[ExactError, ...] = attempt("ellipses", lambda: ellipses_of(), ())
-    failures += [f"{sweep.method}, {sweep.parameter}, {sweep.failure}" for sweep in sweeps if sweep.failure]
     seconds = time.perf_counter() - begin
     return AccuracyStudy(
         refinements,
@@ -117,8 +106,6 @@ def measure() -> AccuracyStudy:
         seconds,
         commit(),
         versions(),
-        sweeps,
-        stated,
         discs,
         ellipses,
     )
@@ -136,7 +123,7 @@ def ellipses_of(elements: bool = True) -> tuple[ExactError, ...]:
 
 
 def quick(elements: bool = True) -> tuple[Invariant, ...]:
-    """The verdicts of a shorter study, part by part up to the first that disagrees: fewer grids, no sweeps.
+    """The verdicts of a shorter study, part by part up to the first that disagrees: fewer grids.
 
     For trials of planted faults: whatever fails is a verdict without a result.
     elements : with the finite elements under ellipses, the last part, which takes longest.

@@ -30,7 +30,6 @@ from verification.report.sections import (
     family_section,
     invariants_section,
     overview_section,
-    parameters_section,
     published_section,
     refinement_section,
 )
@@ -61,7 +60,6 @@ SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
     ("Evidence", invariants_section.section),
     ("Evidence", refinement_section.semianalytic_section),
     ("Evidence", refinement_section.finite_element_section),
-    ("Evidence", parameters_section.section),
     ("Evidence", detection_sections.faults_of),
     ("Evidence", detection_sections.mutants_of),
     ("Evidence", detection_sections.self_tests_of),

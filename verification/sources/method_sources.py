@@ -1,6 +1,5 @@
 """Records of the two numerical methods; each method is imported when it first solves."""
 
-from collections import deque
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
@@ -8,11 +7,10 @@ from typing import Any
 
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad, keywords
 from verification.problem.loading_curve import LoadingCurve, Problem
-from verification.sources.source_record import RESPONSE, Kind, NumericalParameter, Solver, Source, Style
+from verification.sources.source_record import RESPONSE, Kind, Solver, Source, Style
 
 # Element size on a loading curve, which needs many solves; it leaves 1e-7 of the approach.
 CURVE_SIZE = 0.28
-Levels = tuple[tuple[str, Mapping[str, Any], float], ...]
 
 
 def solve_semianalytic(problem: Problem, numerics: Mapping[str, Any] | None = None) -> Any:
@@ -56,46 +54,26 @@ def _elements(numerics: Mapping[str, Any], problem: CoatedContact | PrescribedLo
     return solve(**keywords(problem), **numerics)
 
 
-def sharing_pressure(solve: Solver, kept: int = 1) -> Solver:
-    """``solve`` that does not solve anew a problem that differs from an earlier one in friction alone.
+def sharing_pressure(solve: Solver) -> Solver:
+    """``solve`` that does not solve anew a problem that differs from the last one in friction alone.
 
     The pressure does not depend on friction (Goodman): ``with_friction`` of the earlier solution adds to its
     fields those of the tangential traction. Solutions that lack it are solved each time.
-    kept : number of solutions that are kept, of a problem and its numerics each.
     """
-    earlier: deque[tuple[CoatedContact, dict[str, Any], Any]] = deque(maxlen=kept)
+    last: list[tuple[CoatedContact, dict[str, Any], Any]] = []
 
     def shared(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> Any:
-        for known, given, solution in earlier:
+        for known, given, solution in last:
             same = replace(known, friction=problem.friction) == problem and given == (numerics or {})
             if same and hasattr(type(solution), "with_friction"):
                 return solution.with_friction(problem.friction)
         solution = solve(problem, numerics)
-        earlier.append((problem, dict(numerics or {}), solution))
+        last[:] = [(problem, dict(numerics or {}), solution)]
         return solution
 
     return shared
 
 
-def _varied(keyword: str, label: str, values: tuple[Any, ...], **fixed: Any) -> Levels:
-    """Levels of a parameter that is 1/step."""
-    return tuple((label.format(v), {keyword: v, **fixed}, 1 / v) for v in values)
-
-
-def _reduced(keyword: str, label: str, values: tuple[float, ...], **fixed: Any) -> Levels:
-    """Levels of a parameter that is the step."""
-    return tuple((label.format(v), {keyword: v, **fixed}, v) for v in values)
-
-
-# The refinement studies of the patches are in `credibility.accuracy_study`. All parameters but the size of
-# the elements are varied on a coarser mesh, to save time.
-_FEM = partial(NumericalParameter, "fem_reference")
-ELEMENTS = (
-    _FEM("element size", _reduced("size", "size {}", (0.36, 0.27, 0.19, 0.12), order=4), order=4.0),
-    _FEM("element order", _varied("order", "order {}", (2, 3, 4), size=0.19), order=4.0),
-    _FEM("outer boundary", _varied("far", "at {:g}", (125.0, 250.0, 500.0, 1000.0), size=0.27)),
-    _FEM("load balance", _reduced("load_tolerance", "{:.0e}", (1e-5, 1e-6, 1e-7, 1e-8), size=0.27)),
-)
 # Coarse numerics whose uncertainty is below the caps; stresses and thin coatings need smaller elements.
 METHOD_SOURCES = (
     Source(
@@ -117,7 +95,6 @@ METHOD_SOURCES = (
         Style("fem", (3.6, 3.0), 1.9, marker="^"),
         solve_elements,
         package="fem_reference",
-        parameters=ELEMENTS,
         coarse={"size": 0.2},
         coarse_stress={"size": 0.17},
         fields="mesh",

@@ -44,20 +44,6 @@ class Style:
     marker: str = "o"
 
 
-@dataclass(frozen=True)
-class NumericalParameter:
-    """One numerical parameter of a method: its ``levels`` as (name, keywords, step), coarse to fine.
-
-    order : theoretical, at which the error falls with the step.   coated : of coated solids alone.
-    """
-
-    method: str
-    name: str
-    levels: tuple[tuple[str, Mapping[str, Any], float], ...]
-    order: float = 2.0
-    coated: bool = False
-
-
 def _everything(problem: Problem, kind: str) -> bool:
     return True
 
@@ -69,7 +55,6 @@ class Source:
     solve : solver of every problem it supports; modules are imported when it is called.
     accepts : (problem, kind of quantity) -> whether it gives such quantities of such a problem.
     package : module or package that the fingerprint of its stored solutions is taken of.
-    parameters : numerical parameters of a refinement study.
     coarse, coarse_stress : keywords of the coarse solves of the invariants, for scalars and for stresses.
     equation : what it solves, where another source solves it too, in code of its own.
     fields : how its fields are written for ParaView, "mesh" or "boxes"; "" where they are not.
@@ -83,7 +68,6 @@ class Source:
     accepts: Callable[[Any, str], bool] = _everything
     package: str = ""
     equation: str = ""
-    parameters: tuple[NumericalParameter, ...] = ()
     coarse: Mapping[str, Any] = field(default_factory=dict)
     coarse_stress: Mapping[str, Any] = field(default_factory=dict)
     fields: str = ""

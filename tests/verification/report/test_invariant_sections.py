@@ -6,17 +6,12 @@ from xml.etree import ElementTree
 
 import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
-from synthetic_study import study
 
-from verification.credibility.accuracy_study import from_json as study_from_json
-from verification.credibility.accuracy_study import to_json as study_to_json
-from verification.credibility.parameter_sweeps import Stated, Sweep
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
 from verification.regression.junit_xml import junit_xml
 from verification.report.report_material import Material
 from verification.report.sections.invariants_section import invariant_table, section
-from verification.report.sections.parameters_section import parameter_section
 from verification.report.tables.case_tables import dominating_parameter
 from verification.running.case_result import from_json, to_json
 
@@ -95,30 +90,3 @@ def test_dominating_parameter_is_the_largest_share_of_the_less_certain_side():
     rows = tuple(("peak_pressure", parameter, value) for parameter, value in (("size", 1e3), ("domain", 1e9)))
     sources = tuple(replace(s, budget=rows) for s in result.sources)
     assert dominating_parameter(replace(result, sources=sources), claim, verdict) == "semi-analytical: domain"
-
-
-def studies():
-    steps = (8.0, 4.0, 2.0, 1.0)
-    values = {"p0": tuple(1 + 1e-3 * h**2 for h in steps), "a": tuple(1 + 1e-5 * h for h in steps)}
-    refinement = Sweep("semianalytic", "coated", "patch size", 2.0, tuple("abcd"), steps, values)
-    stated = Stated("semianalytic", "coated", {"p0": 5e-4, "a": 1e-4}, (), {"p0": 1e-3, "a": 1e-5})
-    return (refinement,), (stated,)
-
-
-def test_parameter_section_marks_a_stated_uncertainty_below_the_true_error():
-    section = parameter_section(*studies())
-    totals, orders = section.parts[0].tables
-    p0, a = totals.rows
-    assert [cell.css for cell in p0.cells[1:3]] == ["flag disagrees", "flag agrees"]
-    assert [cell.css for cell in a.cells[1:3]] == ["flag agrees", "flag agrees"]
-    assert p0.cells[2].sort == pytest.approx(1.25e-3, rel=1e-3)
-    assert [row.cells[0].text for row in orders.rows] == ["2", "1"]
-    assert "1 of 2" in (section.parts[0].text)
-
-
-def test_knobs_survive_the_file_of_the_accuracy_study():
-    refinements, stated = studies()
-    whole = replace(study(), sweeps=refinements, stated=stated)
-    back = study_from_json(json.loads(json.dumps(study_to_json(whole), allow_nan=False)))
-    assert back == whole
-    assert back.sweeps[0].estimate("a").uncertainty == pytest.approx(1.25e-5, rel=1e-5, abs=0)
