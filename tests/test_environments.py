@@ -32,7 +32,7 @@ QUICK = {
     r"(study \w+).*": r"\1 --help",
     r"completion .*": "completion bash",
 }
-NOT_RUN = ("--scheduler", "baseline update", "view ", "<")
+NOT_RUN = ("--scheduler", "baseline update", "<")
 
 
 def commands() -> list[tuple[str, str]]:

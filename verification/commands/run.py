@@ -82,7 +82,7 @@ def run(
         cases: Names of shipped cases, see coatcheck list; .toml files; "published" for all published results.
         output: Directory of the report: report.html, report.json, junit.xml and one file per case.
         time_limit: Seconds one case may take before it is stopped and reported as having no result.
-        fields: Also write the fields of each case, for ParaView and coatcheck view, into its folder fields.
+        fields: Also write the fields of each case, for ParaView, into its folder fields.
         verbose: Print the seconds and iterations of every source as the cases finish.
     """
     jobs, silent = worker_count(jobs, time_limit), quiet or as_json

@@ -1,8 +1,5 @@
 """Meshes and boxes for ParaView: the stresses of the Solutions with names, units, case file and checksum."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
 from case_texts import case_text
@@ -10,8 +7,6 @@ from case_texts import case_text
 import fem_reference
 import semianalytic
 from verification.cases.case_file import parse_case
-from verification.commands.common.command_error import CommandError
-from verification.commands.view import _picture, view
 from verification.problem.quantity import STRESSES
 from verification.running.checked_files import StoreError
 from verification.running.stored_fields import read_fields, write_fields
@@ -127,51 +122,3 @@ def test_a_method_without_fields_leaves_a_sentence(tmp_path, case):
     found = write_fields(case, {"semianalytic": object()}, tmp_path)
     assert "AttributeError" in found.failures["semianalytic"]
     assert (found.mesh, found.boxes) == (None, ())
-
-
-def test_a_picture_is_rendered_without_a_display(tmp_path, folder):
-    picture = tmp_path / "pictures" / "one.png"
-    code = view("one", output=folder, quantity="sigma_xz", screenshot=picture)
-    if code == 3:
-        pytest.skip("VTK cannot render off screen on this machine")
-    assert code == 0
-    assert picture.read_bytes().startswith(b"\x89PNG")
-
-
-@pytest.mark.parametrize(
-    ("program", "time_limit", "said"),
-    [
-        ("import os; os.abort()", 60.0, "render"),
-        ("import time; time.sleep(60)", 0.5, "picture"),
-        ("raise SystemExit(0)", 60.0, "render"),
-    ],
-)
-def test_rendering_that_crashes_or_hangs_is_one_message(tmp_path, program, time_limit, said):
-    with pytest.raises(CommandError) as error:
-        _picture([sys.executable, "-c", program], tmp_path / "x.png", time_limit)
-    assert error.value.code == 3
-    assert said in str(error.value)
-    assert len(str(error.value).splitlines()) == 1
-    assert not list(tmp_path.iterdir())
-
-
-@pytest.mark.parametrize(
-    ("words", "code", "said"),
-    [
-        ({"case": "two"}, 2, "--fields"),
-        ({"case": "../one"}, 2, "../one"),
-        ({"case": "one", "quantity": "sigma_zy"}, 2, "--quantity"),
-        ({"case": "one", "screenshot": "x.jpg"}, 2, ".png"),
-        ({"case": "one"}, 3, "display"),
-    ],
-)
-def test_what_cannot_be_viewed_is_one_sentence(folder, capsys, environment, monkeypatch, words, code, said):
-    environment(DISPLAY="", WAYLAND_DISPLAY="")
-    monkeypatch.setattr("sys.platform", "linux")
-    options = {name: value for name, value in words.items() if name != "case"}
-    if "screenshot" in options:
-        options["screenshot"] = Path(options["screenshot"])
-    assert view(words["case"], output=folder, **options) == code
-    error = capsys.readouterr().err
-    assert said in error
-    assert len(error.splitlines()) == 1
