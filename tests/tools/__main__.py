@@ -17,6 +17,7 @@ app.command("open_digits_made.command:vectors")
 app.command("energy_bounds.command:bounds")
 app.command("assumption_maps_made.command:assumptions")
 app.command("tour_recording:tour")
+app.command("result_picture:picture")
 
 if __name__ == "__main__":
     sys.exit(app(result_action="return_value"))

@@ -8,7 +8,6 @@ import numpy as np
 from verification.cases.case_file import default_cases
 from verification.cases.published_file import PublishedCase, published_cases, read_published
 from verification.judging.verdict import Outcome
-from verification.manual import case_figures
 from verification.manual.baseline_numbers import baseline, points, stored
 from verification.manual.markdown_text import shown, symbol, table, text, typeset
 from verification.page.number_text import scientific
@@ -44,9 +43,8 @@ that were recomputed from formulas are compared and not counted either.
 
 
 def contact_pages() -> Iterator[tuple[str, str | bytes]]:
-    """Path with content of the page and the figure of every contact case, then their list."""
+    """Path with content of the page of every contact case, then their list."""
     for name in default_cases():
-        yield f"cases/{name}.svg", case_figures.of_case(name)
         yield f"cases/{name}.md", _contact_page(stored(name))
     yield "cases/index.md", _index("Cases of the default run", CONTACTS, default_cases())
 
@@ -77,9 +75,6 @@ def _contact_page(result: CaseResult) -> str:
             f"# {text(result.title)}",
             f"Case `{name}`. Source of the problem: {text(result.source)}.",
             f"    coatcheck run {name}",
-            f"```{{figure}} {name}.svg\n:alt: section, stresses, differences of {name}\n\n"
-            "Section of the problem; pressure and stresses of every source; the largest difference of each "
-            "group of comparisons as a dot, its uncertainty as a bar, the cap dashed.\n```",
             "## Problem",
             *_problem(result),
             "## Results",

@@ -44,13 +44,6 @@ class Curve:
         """The curve in a legend."""
         return f"E1/E2 = {self.ratio:.4g}, f = {self.friction:g}"
 
-    def extremes(self, quantity: str) -> tuple[tuple[float, float], tuple[float, float]]:
-        """(h, value) of the smallest and of the largest value of the solved points."""
-        value = self.stress.get(quantity, self.scalar.get(quantity))
-        assert value is not None
-        low, high = int(value.argmin()), int(value.argmax())
-        return (float(self.h[low]), float(value[low])), (float(self.h[high]), float(value[high]))
-
 
 @dataclass(frozen=True)
 class Difference:

@@ -16,7 +16,6 @@ from verification.page.page_parts import Cell, Part, Section, Table, Value, numb
 from verification.page.source_labels import source_label
 from verification.study.choice.failure_criteria import MODES, Judged, judged
 from verification.study.choice.thickness_choice import DRAWN, Choice, End, Range, choice
-from verification.study.largest_stresses import QUANTITIES
 from verification.study.pages.contour_maps import contour_figures, nearest
 from verification.study.pages.study_assembly import (
     Draw,
@@ -35,7 +34,7 @@ from verification.study.pages.study_figures import (
     use_figures,
 )
 from verification.study.study_plan import Study
-from verification.study.study_table import SCALARS, SOURCES, read_columns
+from verification.study.study_table import SOURCES, read_columns
 from verification.study.thickness_curves import Curve, curves, differences
 
 DIGITS = 2  # of a thickness, at most
@@ -237,7 +236,6 @@ def write_study_report(
         inputs_section(study),
         *drawings,
         *check_sections(differences(columns)),
-        Section("extremes", "Extremes of every curve", [_extremes(found, units)]),
         *failed_section(failures),
     ]
     solved = sum(c.h.size for c in every)
@@ -245,41 +243,6 @@ def write_study_report(
     points = ("points", f"{solved} solved" + (f", {lost} could not be" if lost else ""))
     summary = " ".join(said) or f"No answer: no curve of {study.title} has two solved points."
     return write_page(table, study, folder, said, summary, sections, [points], facts)
-
-
-def _extremes(found: Sequence[Curve], units: Units) -> Part:
-    rows = []
-    for curve in found:
-        size = curve.a_h / units.metre
-        for quantity in (*QUANTITIES, *SCALARS):
-            (h_low, low), (h_high, high) = curve.extremes(quantity)
-            stress = SCALARS.get(quantity, "p_h") == "p_h"
-            scale = curve.p_h / units.pascal if stress else getattr(curve, SCALARS[quantity]) / units.metre
-            places = "–"
-            if quantity in QUANTITIES:
-                i = int(curve.stress[quantity].argmax())
-                x, z = curve.x[quantity][i] * size, curve.z[quantity][i] * size
-                places = f"{x:.2f}, {z:.2f}".replace("nan", "–")
-            numbers = zip(
-                (low * scale, h_low * size, high * scale, h_high * size), ("5", "3") * 2, strict=True
-            )
-            rows.append(
-                row(
-                    quantity,
-                    number(curve.ratio, "{:.4g}".format),
-                    number(curve.friction, "{:g}".format),
-                    units.stress if stress else units.length,
-                    *(number(value, f"{{:.{digits}g}}".format) for value, digits in numbers),
-                    places,
-                )
-            )
-    table = Table(
-        f"Extremes of every curve among its solved points; thicknesses, and places of the largest, in "
-        f"{units.length}.",
-        ["quantity", "E1/E2", "f", "unit", "smallest", "at h", "largest", "at h", "x, z"],
-        rows,
-    )
-    return Part("", [table], folded=f"{len(rows)} rows")
 
 
 def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) -> Section:

@@ -1,12 +1,6 @@
-"""Figures of the case pages as SVG, drawn from the numbers of the baseline.
+"""The picture of the README as SVG, drawn from the numbers of the baseline."""
 
-The picture of a contact case, such as that of the README, is written to standard output by:
-
-python -m verification.manual.case_figures 14_ratio_4_sliding
-"""
-
-import io
-import sys
+from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
@@ -15,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from verification.manual.baseline_numbers import stored
+from verification.manual.generated_blocks import SOURCE
 from verification.page.number_text import engineering, plain
 from verification.report.tables.case_lookup import contact_radius, layers
 from verification.running.case_result import CaseResult
@@ -52,7 +47,7 @@ GROUPS = (
 )
 
 
-def of_case(name: str) -> bytes:
+def picture(name: str = "14_ratio_4_sliding") -> int:
     """Section, pressure with sigma_xx of the surface, sigma_xx below, differences of a contact case."""
     result = stored(name)
     with mpl.rc_context(SETTINGS):
@@ -67,9 +62,9 @@ def of_case(name: str) -> bytes:
         surface.legend(frameon=False, loc="best")
         _below(below, result)
         _distances(distances, result)
-        content = io.BytesIO()
-        figure.savefig(content, format="svg", metadata={"Date": None, "Creator": None})
-        return content.getvalue()
+        path: Path = SOURCE / "_static" / "result.svg"
+        figure.savefig(path, format="svg", metadata={"Date": None, "Creator": None})
+    return 0
 
 
 def _section(axes: Any, result: CaseResult) -> None:
@@ -194,7 +189,3 @@ def _colour(between: tuple[str, str]) -> str:
 
 def _name(between: tuple[str, str]) -> str:
     return " – ".join("exact" if name in EXACT else SOURCES[name].label for name in between)
-
-
-if __name__ == "__main__":
-    sys.stdout.buffer.write(of_case(sys.argv[1]))
