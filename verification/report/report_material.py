@@ -17,12 +17,10 @@ from verification.credibility.manufactured_solutions import DesignOrder, design_
 from verification.credibility.model_error import ModelError, judged_quantities, model_error
 from verification.credibility.self_tests import SelfTest
 from verification.evidence import alarm_record, enclosure_record
-from verification.evidence import mutant_record as mutation
 from verification.evidence.alarm_record import AlarmRecord
 from verification.evidence.assumption_maps import AssumptionMaps, read_maps
 from verification.evidence.enclosure_record import EnclosureRecord
 from verification.evidence.fault_record import Record, read_record
-from verification.evidence.mutant_record import MutantRecord
 from verification.problem.coated_contact import CoatedContact
 from verification.regression.baseline_change import Regression
 from verification.report.tables.case_lookup import slug
@@ -40,7 +38,6 @@ _HARNESS = ("verification/judging", "verification/sampling")
 JUDGED = {
     "faults": (*_METHODS, *_HARNESS, "verification/credibility/faults"),
     "alarms": (*_METHODS, *_HARNESS),
-    "mutants": (*_METHODS, *_HARNESS, "verification/running"),
     "enclosures": ("verification/sources/enclosures", "verification/sources/references"),
     "maps": ("verification/sources/assumptions",),
 }
@@ -57,7 +54,7 @@ class Evidence:
     """What a report shows beside the results; None or () for what is missing, see ``failures``.
 
     orders, parts : manufactured solutions and imports, measured.
-    faults, alarms, mutants, enclosures : read from records.
+    faults, alarms, enclosures : read from records.
     accuracy : errors of the methods over resolution.
     baseline : the change of each number since the baseline.
     maps : what the assumptions of the model cost.   models : the same of each case, by its name.
@@ -73,7 +70,6 @@ class Evidence:
     accuracy: AccuracyStudy | None = None
     baseline: Regression | None = None
     self_tests: tuple[SelfTest, ...] = ()
-    mutants: MutantRecord | None = None
     enclosures: EnclosureRecord | None = None
     maps: AssumptionMaps | None = None
     older: tuple[str, ...] = ()
@@ -112,7 +108,6 @@ def gather(
             failures.append(" ".join(message.split())[:300])
             return otherwise
 
-    mutants = attempt("mutants", lambda: mutation.read_record(records), None)
     enclosed = attempt("enclosures", lambda: enclosure_record.read_record(records), None)
     maps = attempt("maps of the assumptions", lambda: read_maps(records), None)
     models = {
@@ -124,7 +119,6 @@ def gather(
     made = {
         "faults": faults.commit if faults else None,
         "alarms": alarms.commit if alarms else None,
-        "mutants": mutants.info.commit if mutants else None,
         "enclosures": enclosed.commit if enclosed else None,
         "maps": made_with(maps)[1] if maps and maps.maps else None,
     }
@@ -134,7 +128,6 @@ def gather(
         faults,
         alarms,
         tuple(failures),
-        mutants=mutants,
         enclosures=enclosed,
         self_tests=tuple(self_tests),
         maps=maps,

@@ -61,7 +61,6 @@ SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
     ("Evidence", refinement_section.semianalytic_section),
     ("Evidence", refinement_section.finite_element_section),
     ("Evidence", detection_sections.faults_of),
-    ("Evidence", detection_sections.mutants_of),
     ("Evidence", detection_sections.self_tests_of),
     ("Evidence", _baseline),
     ("Evidence", lambda _: guests_section.section()),
@@ -69,7 +68,7 @@ SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
 
 
 # The page of each record that may be older than the code it judges.
-RECORDS = {"faults": "faults", "mutants": "mutants", "model": "maps"}
+RECORDS = {"faults": "faults", "model": "maps"}
 
 
 def _dated(material: Material, section: Section | None) -> Section | None:

@@ -36,7 +36,6 @@ from verification.page.page_parts import (
 from verification.page.source_labels import pair_label, source_label
 from verification.page.svg_loglog import draw_histogram
 from verification.problem.quantity import SCALARS
-from verification.report.credibility.detection_sections import mutants_message
 from verification.report.report_material import Evidence, Material
 from verification.report.report_words import stated
 from verification.report.sections.accuracy_section import accuracies, coverage_table
@@ -226,7 +225,7 @@ def section(material: Material) -> Section | None:
             folded="What the semi-analytical method and the integral equation share",
         ),
         Part(stated("tested_patches"), folded="What comparisons of a sphere test of the patches"),
-        Part(f"{_faults(evidence)} {_mutants(evidence)}", [], title="6. Fault detection"),
+        Part(_faults(evidence), [], title="6. Fault detection"),
         Part(_alarms(evidence), [], _histograms(evidence), "7. False alarms"),
         Part("", [alarm_table(evidence.alarms)], folded="Verdicts of clean problems that are not AGREES"),
         Part(stated("not_claimed"), title="8. Not claimed"),
@@ -236,8 +235,7 @@ def section(material: Material) -> Section | None:
 
 def _when(evidence: Evidence, name: str) -> str:
     """Date and commit of the record ``name``, marked where the code that it judges has changed since."""
-    found = getattr(evidence, name)
-    made = found.info if name == "mutants" else found
+    made = getattr(evidence, name)
     older = ", older than the code" if name in evidence.older else ""
     return f"{made.started[:10]}, {made.commit or 'no commit'}{older}"
 
@@ -312,14 +310,6 @@ def _faults(evidence: Evidence) -> str:
         made=_when(evidence, "faults"),
         survivors=record.survivors,
     )
-
-
-def _mutants(evidence: Evidence) -> str:
-    record = evidence.mutants
-    if record is None:
-        return NO_RECORD.format("mutants", "python tests/tools mutants")
-    when = _when(evidence, "mutants")
-    return f"Apart from these, changes at random places: {mutants_message(record)} Measured {when}."
 
 
 def _histograms(evidence: Evidence) -> Gallery | None:

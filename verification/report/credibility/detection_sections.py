@@ -1,4 +1,4 @@
-"""What the checks detect: planted faults, mutants, self-tests of the harness."""
+"""What the checks detect: planted faults, self-tests of the harness."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -13,11 +13,9 @@ from verification.credibility.faults.first_notice import (
 )
 from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record
 from verification.evidence.fault_record import Row as Fault
-from verification.evidence.mutant_record import REQUIRED, MutantRecord
-from verification.evidence.mutant_record import Catch as Noticer
 from verification.page.html_page import render_sections
 from verification.page.number_text import plain, scientific, seconds
-from verification.page.page_parts import Cell, Part, Section, Table, Value, row, table_of, words
+from verification.page.page_parts import Cell, Part, Section, Table, Value, table_of, words
 from verification.page.source_labels import source_label
 from verification.report.report_material import Material
 from verification.report.report_words import stated
@@ -242,52 +240,6 @@ def _seen_cell(fault: Fault, column: str) -> Cell:
         return Cell(f"0/{seen.made}", 0.0, note=f"all {seen.made} pass")
     css = "agrees" if seen.disagree else "inconclusive" if seen.inconclusive else "no-result"
     return Cell(f"{text}/{seen.made}", seen.disagree + seen.inconclusive, f"verdict {css}", seen.message)
-
-
-def mutants_message(record: MutantRecord) -> str:
-    """The score as a message."""
-    caught, count = record.score()
-    return (
-        f"{caught} of {count} mutants are caught ({plain(100 * caught / max(count, 1), 3)} %), "
-        f"{len(record.trials) - count} equivalent ones apart."
-    )
-
-
-def mutants_of(material: Material) -> Section | None:
-    """The mutants on record; None without a record."""
-    record = material.evidence.mutants
-    if record is None:
-        return None
-    method = stated(
-        "mutants",
-        message=mutants_message(record),
-        date=record.info.started[:10],
-        commit=record.info.commit or "unknown",
-        time=seconds(record.seconds),
-    )
-    shown = [catch for catch in Noticer if any(trial.catch is catch for trial in record.trials)]
-    scores = []
-    for name, required in REQUIRED.items():
-        caught, count = record.score(name)
-        if count:
-            by = [sum((t.room, t.catch) == (name, catch) for t in record.trials) for catch in shown]
-            share = f"{plain(100 * caught / count, 3)} %, {plain(100 * required, 3)} % required"
-            scores.append(row(name, *by, words(share)))
-    parts = [Part(method, [Table("Mutants of each room.", ["room", *map(str, shown), "caught"], scores)])]
-    if record.survivors:
-        survivors = table_of(
-            "Survivors.",
-            record.survivors,
-            [
-                ("place", lambda pair: f"{pair[1].file}:{pair[1].line}"),
-                ("function", lambda pair: words(pair[1].function)),
-                ("change", lambda pair: words(pair[1].change)),
-                ("kind", lambda pair: words(pair[0].kind or "not read")),
-                ("reason", lambda pair: words(pair[0].reason)),
-            ],
-        )
-        parts.append(Part("Mutants that nothing caught.", [survivors]))
-    return Section("mutants", "Mutation testing", parts)
 
 
 def self_tests_of(material: Material) -> Section | None:

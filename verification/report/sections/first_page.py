@@ -254,10 +254,6 @@ def worth(material: Material) -> list[Worth]:
         if faults.alarms:
             silent = [row not in faults.alarms for row in faults.controls]
             share("negative controls left alone", silent, "#faults")
-    if evidence.mutants is not None:
-        caught, total = evidence.mutants.score()
-        info = evidence.mutants.info
-        recorded("mutants detected", f"{caught} of {total}", "#mutants", "mutants", info.started, info.commit)
     if alarms := evidence.alarms:
         value = f"{len(alarms.alarms)} of {alarms.comparisons + alarms.invariants}"
         name = "false alarms, random problems"
