@@ -13,7 +13,6 @@ os.environ["PYTHONPATH"] = os.pathsep.join((HERE, os.environ.get("PYTHONPATH", "
 app = App(name="tests/tools", help=__doc__, help_format="plaintext")
 app.command("bench.command:bench")
 app.command("open_digits_made.command:vectors")
-app.command("energy_bounds.command:bounds")
 app.command("assumption_maps_made.command:assumptions")
 app.command("tour_recording:tour")
 app.command("result_picture:picture")

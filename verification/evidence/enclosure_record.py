@@ -65,56 +65,10 @@ class Ring:
 
 
 @dataclass(frozen=True)
-class EnergyBounds:
-    """Bounds (lower, upper) of stiffness dW/d delta [N/m] and approach [m] at a contact radius.
-
-    displaced : approach [m] by the displacements alone.   rounding : of the stiffness, relative, as counted
-    into the bounds.   unknowns : of both sides.
-    """
-
-    stiffness: tuple[float, float]
-    approach: tuple[float, float]
-    displaced: float
-    rounding: float
-    unknowns: int
-
-
-@dataclass(frozen=True)
-class TwoSided:
-    """Energy bounds by finite elements at the enclosed contact radius, beside what they have to contain."""
-
-    found: EnergyBounds
-    stiffness: Bounds
-    approach: Bounds
-    seconds: float
-
-    @property
-    def contained(self) -> bool:
-        """Whether both enclosures lie between the energy bounds."""
-        pairs = ((self.found.stiffness, self.stiffness), (self.found.approach, self.approach))
-        return all(low <= one.exact[0] and one.exact[1] <= high for (low, high), one in pairs)
-
-    @property
-    def compared(self) -> tuple[tuple[tuple[float, float], float, float], ...]:
-        """Bounds, enclosed value and effectivity of the stiffness, then of the approach.
-
-        The effectivity is the proven over the true error of the displacements alone.
-        """
-        (low, high), exact = self.found.stiffness, self.stiffness.middle
-        ends, displaced, approach = self.found.approach, self.found.displaced, self.approach.middle
-        proven = max(abs(displaced - end) for end in ends)
-        return (
-            ((low, high), exact, (high - low) / (high - exact)),
-            (ends, approach, proven / abs(displaced - approach)),
-        )
-
-
-@dataclass(frozen=True)
 class Enclosure:
     """One problem, a rigid sphere without friction, with its bounds.
 
     profile : bounds of the pressure along the radius, of the problems of published tables.
-    two_sided : bounds by finite elements, of some problems.
     bits, terms : precision and number of basis functions of the proof; 0 where a closed form is enclosed.
     """
 
@@ -128,7 +82,6 @@ class Enclosure:
     bits: int = 0
     terms: int = 0
     profile: tuple[Ring, ...] = ()
-    two_sided: TwoSided | None = None
 
     @property
     def problem(self) -> CoatedContact:

@@ -22,7 +22,6 @@ from verification.manual.tour_session import tour_session
 from verification.page.number_text import scientific
 from verification.problem.quantity import QUANTITIES
 from verification.report.credibility import model_section
-from verification.report.credibility.credibility_statement import two_sided_table
 from verification.report.credibility.detection_sections import faults_section
 from verification.sources.source_registry import METHODS, SOURCES
 
@@ -195,11 +194,6 @@ def enclosures() -> str:
     )
 
 
-def two_sided() -> str:
-    """Energy bounds by finite elements beside the enclosures that they contain."""
-    return shown(two_sided_table(read_enclosures(RECORDS)))
-
-
 def assumption_costs() -> str:
     """Where each measured assumption costs 0.1, 1 and 5 %, and the largest change of its map."""
     maps = read_maps(RECORDS)
@@ -225,7 +219,6 @@ _ALL: Sequence[Callable[[], str]] = (
     solved,
     tour_session,
     enclosures,
-    two_sided,
     assumption_costs,
     more_pages,
 )

@@ -2,7 +2,7 @@
 
 import datetime
 import time
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from importlib.metadata import version
 from typing import TYPE_CHECKING
 
@@ -78,9 +78,7 @@ def certify(
     if record:
         kept = read_record(records)
         others = {one.name: one for one in kept.enclosures} if kept and names else {}
-        bounded = {(one.name, one.bounds): one.two_sided for one in kept.enclosures} if kept else {}
-        fresh = (replace(one, two_sided=bounded.get((one.name, one.bounds))) for one in found)
-        merged = others | {one.name: one for one in fresh}
+        merged = others | {one.name: one for one in found}
         info = run_info("coatcheck certify", started, 1)
         content = EnclosureRecord(
             tuple(merged.values()),

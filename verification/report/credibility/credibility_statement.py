@@ -16,7 +16,6 @@ from verification.credibility.import_independence import shared
 from verification.credibility.manufactured_solutions import DesignOrder
 from verification.credibility.self_tests.known_verdicts import TEST
 from verification.evidence.alarm_record import DECADES, AlarmRecord
-from verification.evidence.enclosure_record import EnclosureRecord
 from verification.judging.verdict import Outcome
 from verification.page.number_text import plain
 from verification.page.page_parts import (
@@ -131,24 +130,6 @@ def pair_table(results: Sequence[CaseResult]) -> Table:
     )
 
 
-def two_sided_table(record: EnclosureRecord | None) -> Table:
-    """Energy bounds by finite elements: ends relative to the enclosed values, effectivity."""
-    rows = []
-    for one in record.enclosures if record else ():
-        if (two := one.two_sided) is not None:
-            cells: list[Cell | float] = []
-            for (low, high), exact, effectivity in two.compared:
-                cells += [1 - low / exact, high / exact - 1, number(effectivity, "{:.1f}".format)]
-            rows.append(row(one.name, *cells))
-    return Table(
-        "Bounds by finite elements at the enclosed contact radius: distance of either end from the enclosed "
-        "value, relative; effectivity, the proven error of the displacements over the true one.",
-        ["problem", "below", "above", "effectivity", "below", "above", "effectivity"],
-        rows,
-        [("", 1), ("stiffness of a flat punch", 3), ("approach", 3)],
-    )
-
-
 def import_table(parts: Sequence[Imports]) -> Table:
     """Imports of each part from outside, with those that are forbidden."""
 
@@ -214,7 +195,7 @@ def section(material: Material) -> Section | None:
         ),
         Part(
             f"{_compared(results)} {_enclosed(evidence)}",
-            [pair_table(results), two_sided_table(evidence.enclosures)],
+            [pair_table(results)],
             title="4. Comparison with references and between methods",
         ),
         Part(

@@ -1,1 +1,0 @@
-"""Guaranteed bounds by finite elements: displacements from one side, equilibrated stresses from the other."""
