@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from verification.cases.case_file import parse_case
 from verification.cases.published_file import parse_published
 from verification.cases.toml_file import CaseError
+from verification.cases.unit_numbers import METRIC, all_units, metric_units
 from verification.guests.guest_description import parse_guest
 from verification.study.study_plan import parse_study
 
@@ -198,3 +199,10 @@ def test_bare_numbers_do_not_import_pint():
     code = "import sys; from verification.commands.shipped.list_cases import list_cases; list_cases(); "
     code += "assert 'pint' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, timeout=60)
+
+
+@pytest.mark.parametrize("name", METRIC)
+def test_metric_units_are_those_of_pints_own_file(name):
+    base = next(unit for unit in ("Pa", "N", "m") if name.endswith(unit))
+    few, every = (units().Quantity(Decimal("1.7"), name).to(base) for units in (metric_units, all_units))
+    assert few.magnitude == every.magnitude

@@ -19,7 +19,7 @@ from verification.sources.references.integral_equation import PARABOLA, SPHERE, 
 SCALARS = ("contact_radius", "approach", "peak_pressure")
 FLOOR = 0.1  # of the peak pressure, to which a smaller stress is compared
 THINNEST = 0.01  # h/a_h of an outer coating; time and memory grow as (a/h)^2 and more
-POINTS = 2 * np.linspace(-1, 1, 81)  # of a line along an interface, x/a
+POINTS = np.arange(-40, 41) / 20  # of a line along an interface, x/a; symmetric to the last digit
 NEAR = np.linspace(-1.5, 0.5, 21)  # (|x| - a)/h, where the shear of a thin coating is largest
 THIN = 0.5  # h/a, below which ``NEAR`` is finer than ``POINTS``
 # Of both solutions of a change; what their quadratures leave, below 1e-6, is common to both.
@@ -52,14 +52,17 @@ def of_sphere(problem: CoatedContact) -> tuple[Change, Change]:
     return value, Change(0.0, 0.0, 0.0, 0.0, None if value.shear is None else 0.0)
 
 
-@lru_cache(maxsize=8)
 def half_spaces(problem: CoatedContact, gap: Gap = PARABOLA, **resolution: Any) -> ExactSolution:
     """The contact that an assumption is dropped from; several are dropped from the same.
 
     resolution : numerical parameters of ``integral_equation.solve``, ``RESOLUTION`` if none are given.
     """
-    solved = resolution or RESOLUTION
-    return integral_equation.solve(**keywords(problem), gap=gap, estimate_uncertainty=False, **solved)
+    return _half_spaces(problem, gap, **(resolution or RESOLUTION))
+
+
+@lru_cache(maxsize=8)
+def _half_spaces(problem: CoatedContact, gap: Gap, **resolution: Any) -> ExactSolution:
+    return integral_equation.solve(**keywords(problem), gap=gap, estimate_uncertainty=False, **resolution)
 
 
 def change_between(before: ExactSolution, after: ExactSolution) -> Change:

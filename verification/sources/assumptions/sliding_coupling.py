@@ -34,7 +34,8 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.polynomial import legendre
+from numpy.polynomial import Chebyshev, legendre
+from numpy.polynomial.chebyshev import chebpts1
 from numpy.typing import ArrayLike
 from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
@@ -189,17 +190,27 @@ class SlidingExpansion:
 
         The logarithm is that of the Hilbert transform of phi0, sum c_n Q_2n; the rest is smooth.
         """
-        _, shift, waves = self._first
+        _, shift, _ = self._first
         smooth, smooth_slope = _second_kind(self.c, s)
         phi0, phi0_slope = _series(self.c, s)
         q, q_slope, log = -self.beta / np.pi * phi0, -self.beta / np.pi * phi0_slope, np.log((1 + s) / far)
-        phase = np.multiply.outer(s, self.k)
-        rest = 2 * self.beta / np.pi * smooth - 2 / np.pi * np.sin(phase) @ waves - 2 * shift * s
-        slope = 2 * self.beta / np.pi * smooth_slope - 2 * shift
-        slope -= 2 / np.pi * np.cos(phase) @ (self.k * waves)
+        layers, layers_slope = self._by_layers(s), self._by_layers.deriv()(s)
+        rest = 2 * self.beta / np.pi * smooth - layers - 2 * shift * s
+        slope = 2 * self.beta / np.pi * smooth_slope - layers_slope - 2 * shift
         # q / (1 - s), next to the edge by its derivative
         quotient = np.where(far < 1e-8, -q_slope, q / far)
         return q * log + rest, slope + q_slope * log + 2 * quotient / (1 + s), slope
+
+    @cached_property
+    def _by_layers(self) -> Chebyshev:
+        """(2/pi) int [N phat0 + (M - 1) phat1] sin(ks) dk over s = x/a: a polynomial through one point a node.
+
+        Smooth over the outer coating's thickness, to which the number of nodes is fitted.
+        """
+        _, _, waves = self._first
+        s = 0.5 * (1 + chebpts1(self.nodes.s.size))
+        values = 2 / np.pi * np.sin(np.multiply.outer(s, self.k)) @ waves
+        return Chebyshev.interpolate(lambda _: values, s.size - 1, domain=[0, 1])
 
     def _transform(self, psi: Array) -> Array:
         return self.sin[:, :-1] @ (self.nodes.weight * psi)

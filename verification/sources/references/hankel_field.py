@@ -116,14 +116,18 @@ class HankelField:
             if not self.coatings:
                 return total
         k, weighted, (normal, *tangential) = self.waves(r, z, layer)
+        radii, at = np.unique(r, return_inverse=True)  # points on both sides of the axis share theirs
+        pressed, slid = np.zeros((4, radii.size)), np.zeros((7, radii.size))
         step = max(1, CHUNK // k.size)
-        for start in range(0, r.size, step):
+        for start in range(0, radii.size, step):
             part = slice(start, start + step)
-            J = bessel(k, r[part], highest=3 if self.friction else 2)
-            total[:, :, part] += _normal(normal, weighted, J, theta[part])
+            J = bessel(k, radii[part], highest=3 if self.friction else 2)
+            pressed[:, part] = _of_normal(normal, weighted, J)
             if self.friction:
-                plane, anti = tangential
-                total[:, :, part] += self.friction * _sliding(plane, anti, weighted, J, theta[part])
+                slid[:, part] = _of_sliding(*tangential, weighted, J)
+        total += _normal(pressed[:, at], theta)
+        if self.friction:
+            total += self.friction * _sliding(slid[:, at], theta)
         return total
 
     def waves(self, r: Array, z: float, layer: int) -> tuple[Array, Array, list[Amplitudes]]:
@@ -226,28 +230,44 @@ def _rotate(mean: Array, deviator: Array, theta: Array) -> Array:
     return sigma
 
 
-def _normal(A: Amplitudes, weighted: Array, J: list[Array], theta: Array) -> Array:
-    mean = (weighted * (A.ll + A.tt) / 2) @ J[0]
-    deviator = -(weighted * (A.ll - A.tt) / 2) @ J[2]
+def _of_normal(A: Amplitudes, weighted: Array, J: list[Array]) -> Array:
+    """Integrals over the wavenumber of which ``_normal`` consists, (4, r)."""
+    mean, deviator = (weighted * (A.ll + A.tt) / 2) @ J[0], -(weighted * (A.ll - A.tt) / 2) @ J[2]
+    return np.stack([mean, deviator, (weighted * A.S) @ J[0], -(weighted * A.T) @ J[1]])
+
+
+def _normal(integrals: Array, theta: Array) -> Array:
+    mean, deviator, axial, sigma_rz = integrals
     sigma = _rotate(mean, deviator, theta)
-    sigma[2, 2] = (weighted * A.S) @ J[0]
-    sigma_rz = -(weighted * A.T) @ J[1]
+    sigma[2, 2] = axial
     sigma[0, 2] = sigma[2, 0] = sigma_rz * np.cos(theta)
     sigma[1, 2] = sigma[2, 1] = sigma_rz * np.sin(theta)
     return sigma
 
 
-def _sliding(A: Amplitudes, B: Amplitudes, weighted: Array, J: list[Array], theta: Array) -> Array:
+def _of_sliding(A: Amplitudes, B: Amplitudes, weighted: Array, J: list[Array]) -> Array:
+    """Integrals over the wavenumber of which ``_sliding`` consists, (7, r)."""
+    first = (3 * A.ll + A.tt - 2 * B.lt, A.ll + 3 * A.tt + 2 * B.lt, A.ll - A.tt - 2 * B.lt, 4 * A.S)
+    return np.stack(
+        [
+            *(np.stack(first) * weighted / 4 @ J[1]),
+            (weighted * (A.ll - A.tt + 2 * B.lt)) @ J[3] / 4,
+            (weighted * (A.T - B.t)) @ J[2] / 2,
+            -((weighted * (A.T + B.t)) @ J[0]) / 2,
+        ]
+    )
+
+
+def _sliding(integrals: Array, theta: Array) -> Array:
     """Response to unit q_x: A in-plane, times i cos(alpha), with B anti-plane, times sin(alpha)."""
+    along, across, sheared, axial, third, difference, mean = integrals
     c1, s1, c2, s2, c3, s3 = (f(n * theta) for n in (1, 2, 3) for f in (np.cos, np.sin))
     sigma = np.zeros((3, 3, theta.size))
-    third = (weighted * (A.ll - A.tt + 2 * B.lt)) @ J[3] / 4
-    sigma[0, 0] = -c1 * ((weighted * (3 * A.ll + A.tt - 2 * B.lt)) @ J[1]) / 4 + c3 * third
-    sigma[1, 1] = -c1 * ((weighted * (A.ll + 3 * A.tt + 2 * B.lt)) @ J[1]) / 4 - c3 * third
-    sigma[0, 1] = -s1 * ((weighted * (A.ll - A.tt - 2 * B.lt)) @ J[1]) / 4 + s3 * third
-    sigma[2, 2] = -c1 * ((weighted * A.S) @ J[1])
-    difference = (weighted * (A.T - B.t)) @ J[2] / 2
-    sigma[0, 2] = -((weighted * (A.T + B.t)) @ J[0]) / 2 + c2 * difference
+    sigma[0, 0] = -c1 * along + c3 * third
+    sigma[1, 1] = -c1 * across - c3 * third
+    sigma[0, 1] = -s1 * sheared + s3 * third
+    sigma[2, 2] = -c1 * axial
+    sigma[0, 2] = mean + c2 * difference
     sigma[1, 2] = s2 * difference
     for i, j in ((1, 0), (2, 0), (2, 1)):
         sigma[i, j] = sigma[j, i]

@@ -251,11 +251,12 @@ def _solve(
     x_i, w_i = gauss_legendre(_contact_nodes(nodes, guess, solids))
     s, weight = 0.5 * (1 + x_i), 0.5 * w_i
     k, k_weight = kernel_wavenumbers(solids, guess, panel, tail)
-    kernel = k_weight * (compliance(solids, E_star, k) - 1)
+    # wavenumbers go as 1/a, so that cos(kx) is that of every radius
+    cosine = np.cos(np.multiply.outer(k * guess, np.append(s, 1.0)))
 
     def contact(a: float) -> tuple[Array, float, float]:
-        x = a * s
-        cosine = np.cos(k[:, None] * np.append(x, a))
+        x, shrink = a * s, guess / a
+        kernel = shrink * k_weight * (compliance(solids, E_star, shrink * k) - 1)
         K = (2 / np.pi) * (cosine.T * kernel) @ cosine
         if beyond is not None:
             K += E_star / np.pi * beyond(np.append(x, a))
