@@ -90,7 +90,7 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
         nothing = Change(0.0, 0.0, 0.0, 0.0, 0.0 if problem.coatings else None)
         return nothing, nothing
     require_thick(problem)
-    expansion = SlidingExpansion(problem, nodes=100, solved=RESOLUTION, exact=half_spaces(problem))
+    expansion = SlidingExpansion(problem, nodes=70, solved=RESOLUTION, exact=half_spaces(problem))
     change, exact = expansion.change, expansion.exact
     panel, tail = RESOLUTION["panel"], RESOLUTION["tail"]
 

@@ -254,6 +254,7 @@ def _solve(
     # wavenumbers go as 1/a, so that cos(kx) is that of every radius
     cosine = np.cos(np.multiply.outer(k * guess, np.append(s, 1.0)))
 
+    @cache  # the root that is found was asked for before
     def contact(a: float) -> tuple[Array, float, float]:
         x, shrink = a * s, guess / a
         kernel = shrink * k_weight * (compliance(solids, E_star, shrink * k) - 1)
@@ -270,17 +271,17 @@ def _solve(
         stiffness = 2 * np.pi * a * (weight @ phi[:, 0])
         return phi @ np.array([delta, -1.0]), float(delta), float(stiffness)
 
-    @cache  # at the ends of the bracket it is asked for again
     def excess(log_a: float) -> float:
         a = float(np.exp(log_a))
         return float(np.log(2 * np.pi * a * (weight @ contact(a)[0]) / load))
 
-    span, widest = np.log(1.5), np.log(gap.widest * radius)
+    widest = np.log(gap.widest * radius)
     low = high = min(np.log(guess), widest)
+    span = min(0.6 * abs(excess(low)) + 1e-9, np.log(1.5))  # the load goes about as a^3
     while excess(low) > 0 and low > np.log(guess) - 7:
-        low -= span
+        low, span = low - span, 1.5 * span
     while excess(high) < 0 and high < min(np.log(guess) + 7, widest):
-        high = min(high + span, widest)
+        high, span = min(high + span, widest), 1.5 * span
     if not excess(low) <= 0 <= excess(high):
         raise ValueError(
             f"load = {load:g} N is carried by no contact radius near {guess:g} m; check the moduli"
