@@ -25,9 +25,7 @@ __all__ = [
     "Pascals",
     "Seconds",
     "Units",
-    "all_units",
     "in_si",
-    "metric_units",
     "of_file",
     "units_of",
 ]
@@ -47,14 +45,13 @@ _USUAL = {
 }
 
 
-# Those of most files, with what pint's own file says of them: a fraction of a second sooner than all.
-METRIC = ("m", "mm", "um", "nm", "Pa", "kPa", "MPa", "GPa", "N", "mN", "kN")
-_DEFINITIONS = (
-    *("nano- = 1e-9 = n-", "micro- = 1e-6 = u-", "milli- = 1e-3 = m-"),
-    *("kilo- = 1e3 = k-", "mega- = 1e6 = M-", "giga- = 1e9 = G-"),
-    *("meter = [length] = m", "second = [time] = s", "gram = [mass] = g"),
-    *("newton = kilogram * meter / second ** 2 = N", "pascal = newton / meter ** 2 = Pa"),
-)
+# Powers of ten of the units of most files, for which pint, half a second, need not be imported.
+METRIC = {
+    "m": {"m": 0, "mm": -3, "um": -6, "µm": -6, "nm": -9},
+    "Pa": {"Pa": 0, "kPa": 3, "MPa": 6, "GPa": 9, "TPa": 12},
+    "N": {"N": 0, "mN": -3, "uN": -6, "kN": 3},
+    "s": {"s": 0},
+}
 
 
 class InSI(float):
@@ -132,11 +129,12 @@ def in_si(text: str, unit: str) -> InSI:
         raise ValueError(f"{needs}; without a unit leave out the quotation marks")
     if name.startswith((",", "_")):
         raise ValueError(f"{needs}, with a decimal point")
+    if name in METRIC[unit]:
+        return InSI.given_in(float(Decimal(parts[1]).scaleb(METRIC[unit][name])), name)
     try:
         if not _UNIT.fullmatch(name):
             raise ValueError(name)
-        registry = metric_units() if name in METRIC else all_units()
-        found = registry.parse_units(name)
+        found = _registry().parse_units(name)
         alike = found.is_compatible_with(unit)
     except Exception:  # pint raises errors of many kinds for a text that is not a unit
         near = [usual for usual in _USUAL[unit] if usual.casefold() == name.casefold()]
@@ -145,7 +143,7 @@ def in_si(text: str, unit: str) -> InSI:
         ) from None
     if not alike:
         raise ValueError(f"{needs}; {name!r} is not a unit of {_KINDS[unit]}")
-    value = registry.Quantity(Decimal(parts[1]), found).to(unit).magnitude
+    value = _registry().Quantity(Decimal(parts[1]), found).to(unit).magnitude
     return InSI.given_in(float(value), name)
 
 
@@ -155,21 +153,10 @@ def of_file(value: float, unit: float) -> float:
 
 
 @cache
-def all_units() -> "UnitRegistry[Decimal]":
-    # Half a second, which a file of bare numbers or metric units does not need.
+def _registry() -> "UnitRegistry[Decimal]":
     from pint import UnitRegistry
 
     return UnitRegistry(non_int_type=Decimal)
-
-
-@cache
-def metric_units() -> "UnitRegistry[Decimal]":
-    """Units of ``METRIC``."""
-    from pint import UnitRegistry
-
-    registry: UnitRegistry[Decimal] = UnitRegistry(None, non_int_type=Decimal)
-    registry.load_definitions(_DEFINITIONS)
-    return registry
 
 
 def _with_unit(unit: str) -> WrapValidator:
