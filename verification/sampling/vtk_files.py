@@ -13,12 +13,10 @@ from verification.problem.array_types import Array
 from verification.problem.quantity import STRESSES, von_mises
 from verification.sampling.stress_plane import depths_of
 
-__all__ = ["EVERY", "LEVELS", "WRITERS"]
+__all__ = ["ALONG", "LEVELS", "WRITERS"]
 
 
-EVERY = 4  # of the patch centres along a side of the box
-
-
+EVERY, ALONG = 4, 121  # of the patch centres along a side of the box, fewer for at most so many points
 LEVELS = 20  # depths of the box, over that of an uncoated solid
 
 
@@ -40,7 +38,8 @@ def _box_files(case: Case, solution: Any) -> dict[str, bytes]:
     import pyvista as pv
 
     middle = len(solution.nodes) // 2
-    every = np.arange(len(solution.nodes))[middle % EVERY :: EVERY]
+    step = max(EVERY, -(-(len(solution.nodes) - 1) // (ALONG - 1)))
+    every = np.arange(len(solution.nodes))[middle % step :: step]
     x = solution.nodes[every]
     files: dict[str, bytes] = {}
     for layer, z in enumerate(depths_of(solution.contact_radius, case.problem.interfaces, LEVELS)):

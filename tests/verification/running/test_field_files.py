@@ -10,6 +10,7 @@ from verification.cases.case_file import parse_case
 from verification.problem.quantity import STRESSES
 from verification.running.checked_files import StoreError
 from verification.running.stored_fields import read_fields, write_fields
+from verification.sampling import vtk_files
 
 pv = pytest.importorskip("pyvista")
 
@@ -101,6 +102,14 @@ def test_every_file_says_where_it_comes_from(case, folder):
         else:
             assert grid.field_data["case file"][0] == case.text
         assert grid.field_data["contact radius [m]"][0] > 0
+
+
+def test_boxes_of_a_fine_grid_leave_out_more_of_it(tmp_path, case, solutions, monkeypatch):
+    monkeypatch.setattr(vtk_files, "ALONG", 9)
+    found = write_fields(case, {"semianalytic": solutions["semianalytic"]}, tmp_path)
+    for path in found.boxes:
+        assert pv.read(path).dimensions[:2] == (9, 9)
+        assert 0.0 in pv.read(path).x
 
 
 def test_damage_and_other_case_files_are_noticed(tmp_path, case, solutions):
