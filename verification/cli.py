@@ -39,7 +39,7 @@ def _group(name: str, summary: str) -> App:
     examples = [
         line for key, entry in COMMANDS.items() if key.startswith(f"{name} ") for line in entry["examples"]
     ]
-    return App(name=name, help=summary, help_epilogue=_epilogue(examples))
+    return App(name=name, help=summary, help_epilogue=_epilogue([*dict.fromkeys(examples)]))
 
 
 app = App(

@@ -203,7 +203,7 @@ class SlidingExpansion:
 
     @cached_property
     def _by_layers(self) -> Chebyshev:
-        """(2/pi) int [N phat0 + (M - 1) phat1] sin(ks) dk over s = x/a: a polynomial through one point a node.
+        """(2/pi) int [N phat0 + (M - 1) phat1] sin(ks) dk over s = x/a: a polynomial with one point a node.
 
         Smooth over the outer coating's thickness, to which the number of nodes is fitted.
         """

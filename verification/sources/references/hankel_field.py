@@ -13,7 +13,7 @@ slowly for quadrature, is taken in closed form from the Abel potential of the pr
 Sneddon, Fourier Transforms (1951); sliding derived by rotation of the wave vector's frame.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from math import factorial
 from typing import Any
@@ -124,7 +124,7 @@ class HankelField:
             J = bessel(k, radii[part], highest=3 if self.friction else 2)
             pressed[:, part] = _of_normal(normal, weighted, J)
             if self.friction:
-                slid[:, part] = _of_sliding(*tangential, weighted, J)
+                slid[:, part] = _of_sliding(tangential, weighted, J)
         total += _normal(pressed[:, at], theta)
         if self.friction:
             total += self.friction * _sliding(slid[:, at], theta)
@@ -245,8 +245,12 @@ def _normal(integrals: Array, theta: Array) -> Array:
     return sigma
 
 
-def _of_sliding(A: Amplitudes, B: Amplitudes, weighted: Array, J: list[Array]) -> Array:
-    """Integrals over the wavenumber of which ``_sliding`` consists, (7, r)."""
+def _of_sliding(loads: Sequence[Amplitudes], weighted: Array, J: list[Array]) -> Array:
+    """Integrals over the wavenumber of which ``_sliding`` consists, (7, r).
+
+    loads : A in-plane, B anti-plane.
+    """
+    A, B = loads
     first = (3 * A.ll + A.tt - 2 * B.lt, A.ll + 3 * A.tt + 2 * B.lt, A.ll - A.tt - 2 * B.lt, 4 * A.S)
     return np.stack(
         [
@@ -259,7 +263,7 @@ def _of_sliding(A: Amplitudes, B: Amplitudes, weighted: Array, J: list[Array]) -
 
 
 def _sliding(integrals: Array, theta: Array) -> Array:
-    """Response to unit q_x: A in-plane, times i cos(alpha), with B anti-plane, times sin(alpha)."""
+    """Response to unit q_x: in-plane, times i cos(alpha), with anti-plane, times sin(alpha)."""
     along, across, sheared, axial, third, difference, mean = integrals
     c1, s1, c2, s2, c3, s3 = (f(n * theta) for n in (1, 2, 3) for f in (np.cos, np.sin))
     sigma = np.zeros((3, 3, theta.size))
