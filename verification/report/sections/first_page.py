@@ -100,8 +100,7 @@ def asked(material: Material) -> str:
     published = len(results) - contacts
     texts = [f"{_counted(contacts, 'contact')} of a sphere with a coated solid"] if contacts else []
     texts += [_counted(published, "published source")] if published else []
-    solved = ", each solved" if len(results) > 1 else ", solved"
-    return f"{' and '.join(texts)}{solved} by independent methods." if texts else ""
+    return f"{' and '.join(texts)}, solved by independent methods." if texts else ""
 
 
 def _counted(count: int, noun: str) -> str:
@@ -224,8 +223,7 @@ def worth(material: Material) -> list[Worth]:
 
     def share(name: str, held: Sequence[bool], href: str, note: str = "") -> None:
         if held:
-            value = f"{sum(held)} of {len(held)}"
-            found.append(Worth(name, value, href, all(held), note))
+            found.append(Worth(name, _share(held), href, all(held), note))
 
     def recorded(name: str, value: str, href: str, key: str, started: str, commit: str | None) -> None:
         older = key in evidence.older
@@ -249,7 +247,7 @@ def worth(material: Material) -> list[Worth]:
         recorded("planted faults detected", value, "#faults", "faults", faults.started, faults.commit)
         if of_method(faults):
             noticed, total = method_score(faults)
-            name = "of these, in the semi-analytical method"
+            name = "of these, semi-analytical"
             found.append(Worth(name, f"{noticed} of {total}", "#faults", None, kinds(faults)))
         if faults.alarms:
             silent = [row not in faults.alarms for row in faults.controls]
@@ -266,7 +264,8 @@ def worth(material: Material) -> list[Worth]:
         same = sum(case.count(State.SAME) for case in regression.cases)
         total = sum(case.count(state) for case in regression.cases for state in State)
         good = False if regression.unexplained else True if same == total else None
-        found.append(Worth("numbers as in the baseline", f"{same} of {total}", "#baseline", good))
+        value = f"all {total}" if same == total else f"{same} of {total}"
+        found.append(Worth("numbers as in the baseline", value, "#baseline", good))
     share("self-tests passed", [test.passed for test in evidence.self_tests], "#self-tests")
     return found
 
@@ -278,10 +277,14 @@ def _independent(material: Material) -> list[Worth]:
         for claim, verdict in result.verdicts:
             agreed.setdefault(independence(claim.between), []).append(verdict.outcome is Outcome.AGREES)
     return [
-        Worth(f"{kind}", f"{sum(agreed[kind])} of {len(agreed[kind])}", "#cases", all(agreed[kind]))
+        Worth(f"{kind}", _share(agreed[kind]), "#cases", all(agreed[kind]))
         for kind in Independence
         if kind in agreed
     ]
+
+
+def _share(held: Sequence[bool]) -> str:
+    return f"all {len(held)}" if all(held) else f"{sum(held)} of {len(held)}"
 
 
 def alarms(material: Material) -> list[str]:
