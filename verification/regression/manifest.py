@@ -31,7 +31,7 @@ class Manifest:
     """What was judged of one case.
 
     invariants : name, source, cap, number of residuals, largest bound.   sources : those with a result.
-    cells : of a published case, by kind: values that count, changes of their digits that a verdict notices.
+    cells : of a published case, the number of values that count.
     """
 
     comparisons: tuple[Comparisons, ...]
@@ -64,8 +64,6 @@ def manifest_of(result: CaseResult) -> Manifest:
     cells = {}
     if result.published:
         cells["counted values"] = sum(sum(column["counted"]) for column in result.published["columns"])
-        counted = result.published.get("digits", {}).get("groups", {}).get("counted", {})
-        cells["changes of digits noticed"] = int(counted.get("noticed", 0))
     return Manifest(comparisons, invariants, sources, cells)
 
 

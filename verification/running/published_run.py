@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from verification.cases.digit_changes import digit_changes
 from verification.cases.published_file import PublishedCase
 from verification.cases.published_table import PublishedColumn
 from verification.judging.verdict import Outcome, Verdict, compare, judge
@@ -129,12 +128,6 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         seconds=time.perf_counter() - started,
         published=_published(case),
     )
-
-
-def with_digits(case: PublishedCase, result: CaseResult) -> CaseResult:
-    """``result`` with the changes of single digits that its verdicts would notice."""
-    digits = digit_changes(case.columns, case.claims, result.profile_of)
-    return replace(result, published=result.published | {"digits": digits})
 
 
 def failed(case: PublishedCase, reason: str, seconds: float) -> CaseResult:

@@ -7,14 +7,13 @@ from functools import cache
 import numpy as np
 import pytest
 
-from verification.cases.digit_changes import changed_digits
 from verification.cases.published_file import published_cases, read_published
 from verification.cases.published_table import FOLDER
 from verification.judging.verdict import Outcome
 from verification.problem.coated_contact import PrescribedLoad
 from verification.problem.evaluation_points import Points
 from verification.running.case_result import from_json, to_json
-from verification.running.published_run import failed, run, with_digits
+from verification.running.published_run import failed, run
 from verification.sampling.point_values import values
 from verification.sources.limit_extrapolation import extrapolated
 from verification.sources.source_registry import PUBLISHED, solvers
@@ -141,35 +140,6 @@ def test_a_changed_cell_of_a_shipped_file_disagrees(tmp_path, name, file, old, n
     bad = [c.line for c, v in result.verdicts if v.outcome is Outcome.DISAGREES]
     assert len(bad) == 1
     assert bad[0].endswith(f"column {column}")
-
-
-def test_every_changed_digit_that_matters_is_noticed():
-    case = read_published(SHIPPED["jones_1962"])
-    result = run(case, {"semianalytic": semianalytic})
-    digits = with_digits(case, result).published["digits"]
-    counted, departing = (digits["groups"][group] for group in ("counted", "departures"))
-    # A change of the last of six digits matters from 5 upwards: 5 * 9 + 2 of 0.12173, 5 * 9 + 4 of 1.97428.
-    assert (counted["cells"], counted["changes"], counted["noticed"]) == (1, 47, 47)
-    assert (departing["cells"], departing["changes"], departing["noticed"]) == (1, 49, 49)
-    vague = replace(result, profiles=tuple(_vague(p) for p in result.profiles))
-    digits = with_digits(case, vague).published["digits"]
-    assert digits["groups"]["counted"]["noticed"] < 47
-    assert any("0.12178" in one for one in digits["passed"])
-
-
-def _vague(profile):
-    """The profile of a method with an uncertainty of 1e-4."""
-    if profile.source == PUBLISHED:
-        return profile
-    return replace(profile, uncertainty=np.full_like(profile.value, 1e2))
-
-
-def test_a_changed_digit_keeps_the_other_digits():
-    found = list(changed_digits("-1.20e-3"))
-    assert len(found) == 27
-    assert {len(text) for text in found} == {8}
-    assert "-1.90e-3" in found
-    assert "-1.20e-4" not in found
 
 
 def test_a_method_that_fails_leaves_its_sentence():

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 
 from verification.cases.case_file import parse_case
-from verification.cases.digit_changes import digit_changes
 from verification.cases.published_file import PublishedCase, read_published
 from verification.cases.published_table import FOLDER
 from verification.cases.unit_numbers import InSI, of_file
@@ -21,10 +20,6 @@ from verification.running.case_tasks import kept_result, result_path
 from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.running.json_records import plain
 from verification.running.provenance import fingerprint
-
-# Changes of one digit by ten half digits or more, 9 for each digit up to the hundredths, 1 to 5 for a
-# thousandth: in values that count, in values that depart.
-CHANGES = (675, 299)
 
 
 def of_case_file() -> Answers:
@@ -69,17 +64,6 @@ def of_published_table() -> Answers:
     yield "radial strain", float(strain.value[2]), -5.592e-5
     yield "half of its fourth digit", float(strain.uncertainty[2]), 0.5e-8
     yield "coatings", case.problem.coatings[0][2], 6 * inch
-    # a source that has the published values, then one whose uncertainty is half of the scale
-    claims = tuple(
-        c for c in case.claims if c.line == stress.profile.line and c.between[0] == "fem_reference"
-    )
-    for U, share in ((0.0, 1), (0.5 * stress.scale, 0)):
-        mine = replace(stress.reference, uncertainty=np.full(stress.profile.value.shape, U))
-        known = {(stress.profile.quantity, stress.profile.line, "fem_reference"): mine}
-        groups = digit_changes((stress,), claims, known)["groups"]
-        for name, cells, changes in (("counted", 22, CHANGES[0]), ("departures", 8, CHANGES[1])):
-            found = tuple(groups[name][key] for key in ("cells", "changes", "noticed"))
-            yield f"changes of digits, {name}", found, (cells, changes, share * changes)
 
 
 def of_store() -> Answers:

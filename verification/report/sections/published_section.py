@@ -16,7 +16,7 @@ from verification.report.report_material import Material
 from verification.report.report_words import stated
 from verification.running.case_result import CaseResult
 from verification.running.published_counts import counts
-from verification.sources.source_registry import EXACT, METHODS, PUBLISHED, REFERENCES
+from verification.sources.source_registry import METHODS, PUBLISHED, REFERENCES
 
 
 def _sources(result: CaseResult) -> tuple[str, ...]:
@@ -26,13 +26,12 @@ def _sources(result: CaseResult) -> tuple[str, ...]:
 
 
 def section(material: Material) -> Section | None:
-    """Every source at a glance; departures of the sources; changed digits that the verdicts notice."""
+    """Every source at a glance, with the departures of the sources."""
     if not material.published:
         return None
     parts = [
         Part("", [_overview(material)]),
         Part("Departures of the sources", [_departures(material)]),
-        Part("Changed digits", [_digits(material)]),
     ]
     return Section("published", "Published results", [part for part in parts if any(part.tables)])
 
@@ -95,34 +94,6 @@ def _departures(material: Material) -> Table:
         ["source", "column", "kind", "depart", "largest", "of the scale", "published there"],
         rows,
         css="verdicts",
-    )
-
-
-def _digits(material: Material) -> Table:
-    rows = []
-    totals: dict[str, list[int]] = {}
-    for result in material.published:
-        found = result.published.get("digits", {"groups": {}, "passed": []})
-        for group, count in found["groups"].items():
-            total = totals.setdefault(group, [0, 0])
-            total[0] += count["noticed"]
-            total[1] += count["changes"]
-            cells = [group, number(count["cells"], str), tally(count["noticed"], count["changes"])]
-            shares = count["by"] or {}
-            cells += [
-                tally(shares[s], count["changes"]) if s in shares else Cell("–") for s in METHODS + EXACT
-            ]
-            css = "" if count["noticed"] == count["changes"] else "inconclusive"
-            head = Cell(result.title, note="; ".join(found["passed"]), href=f"#{material.anchors[result]}")
-            rows.append(row(head, *cells, css=css))
-    summary = ", ".join(
-        f"{good} of {total} in cells of the group {group} ({plain(100 * good / total)} %)"
-        for group, (good, total) in totals.items()
-    )
-    return Table(
-        stated("digits", summary=summary),
-        ["source", "values", "cells", "noticed", *(f"by {source_label(s)}" for s in METHODS + EXACT)],
-        rows,
     )
 
 
