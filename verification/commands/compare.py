@@ -8,13 +8,13 @@ from rich.markup import escape
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import nearest_run
-from verification.commands.common.shared_options import AsJson, Output, Quiet
+from verification.commands.common.shared_options import AsJson, Quiet
 from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
 from verification.judging.verdict import Outcome
 from verification.regression.number_drift import State
-from verification.regression.run_comparison import RunComparison, compare_runs
+from verification.regression.run_comparison import RunComparison, compare_runs, comparison_message
 from verification.regression.run_exit_codes import DRIFTED, EXIT
-from verification.running.checked_files import StoreError, write_atomically
+from verification.running.checked_files import StoreError
 from verification.running.json_records import plain
 from verification.running.stored_run import read_run
 
@@ -22,9 +22,7 @@ MOST_SHOWN = 8
 
 
 @with_exit_code
-def compare(
-    first: Path, second: Path, *, output: Output | None = None, quiet: Quiet = False, as_json: AsJson = False
-) -> int:
+def compare(first: Path, second: Path, *, quiet: Quiet = False, as_json: AsJson = False) -> int:
     """Show two runs side by side: verdicts that changed, numbers that drifted, versions, times.
 
     Exit codes: 0 nothing changed, 5 numbers differ, 1 a comparison no longer agrees, 2 bad input.
@@ -32,22 +30,15 @@ def compare(
     Args:
         first: Directory of a run, or its report.json.
         second: The run that is compared with it.
-        output: Also write the comparison to this HTML file.
     """
     try:
         found = compare_runs(read_run(first), read_run(second))
-        if output is not None:
-            from verification.regression.run_comparison import comparison_page
-
-            write_atomically(output, comparison_page(found).encode("utf-8", errors="replace"))
     except StoreError as error:
         raise CommandError(f"{error}{nearest_run(first) or nearest_run(second)}") from None
     if as_json:
         print_json({**plain(asdict(found)), "drifted": found.drifted, "worse": found.worse})
     elif not quiet:
         _print(found)
-        if output is not None:
-            print_out(escape(f"page: {output}"))
     return EXIT[Outcome.DISAGREES] if found.worse else DRIFTED if found.drifted else EXIT[Outcome.AGREES]
 
 
@@ -69,9 +60,7 @@ def _print(found: RunComparison) -> None:
         what = f"{change.case}, {change.quantity} on {change.line}, {' against '.join(change.between)}"
         print_out(f"{escape(what)}: {outcomes}; {escape(one_line(change.reason))}")
     if (more := len(found.verdicts) - MOST_SHOWN) > 0:
-        print_out(f"... with {more} more, which --output or --json shows")
+        print_out(f"... with {more} more, which --json shows")
     for name, then, now in found.versions:
         print_out(escape(f"{name}: {one_line(then)} to {one_line(now)}"))
-    from verification.regression.run_comparison import comparison_message
-
     print_out(comparison_message(found))

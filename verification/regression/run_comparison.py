@@ -1,25 +1,11 @@
-"""Comparison of two runs: verdicts, numbers, versions, times, and their page."""
+"""Comparison of two runs: verdicts, numbers, versions, times."""
 
 from dataclasses import dataclass
 from itertools import chain
 
 from verification.judging.verdict import Outcome
-from verification.page.html_page import render_sections
-from verification.page.number_text import factor, scientific, seconds
-from verification.page.page_parts import (
-    Cell,
-    Part,
-    Section,
-    Table,
-    number,
-    outcome_cell,
-    row,
-    table_of,
-    words,
-)
-from verification.page.source_labels import pair_label
+from verification.page.number_text import scientific
 from verification.regression.baseline_change import Baseline, CaseDrift, Update, against, differing, digest
-from verification.regression.baseline_section import MOST, case_table, drift_table
 from verification.regression.number_drift import State, measured
 from verification.running.case_result import CaseResult
 from verification.running.stored_run import StoredRun
@@ -124,65 +110,3 @@ def comparison_message(found: RunComparison) -> str:
         drifted = "no common number drifted"
     by = f", by at most {scientific(largest)} of their scale" if largest else ""
     return f"{changed}; {drifted}{by}."
-
-
-def comparison_page(found: RunComparison) -> str:
-    """The whole page as text."""
-    facts = [("first run", found.paths[0]), ("second run", found.paths[1])]
-    facts += [("first started", found.started[0]), ("second started", found.started[1])]
-    sections = [
-        Section("verdicts", "Verdicts", [_changed(found)]),
-        Section("numbers", "Numbers", [_numbers(found)]),
-        Section("versions", "Provenance", [_versions(found)]),
-        Section("times", "Times", [Part("", [_times(found)])]),
-    ]
-    return render_sections("coatcheck compare", comparison_message(found), facts, sections)
-
-
-def _changed(found: RunComparison) -> Part:
-    if not found.verdicts:
-        return Part("Every comparison has the same verdict in both runs.")
-    table = table_of(
-        "Comparisons whose verdict changed, the changes for the worse first.",
-        sorted(found.verdicts, key=lambda change: not change.worse),
-        [
-            ("case", lambda change: change.case),
-            ("first", lambda change: _outcome(change.before)),
-            ("second", lambda change: _outcome(change.after)),
-            ("quantity", lambda change: change.quantity),
-            ("line", lambda change: change.line),
-            ("between", lambda change: pair_label(change.between)),
-            ("reason in the second", lambda change: words(change.reason)),
-        ],
-    )
-    return Part("", [table])
-
-
-def _numbers(found: RunComparison) -> Part:
-    table = case_table(
-        found.cases, {}, "Every point of every profile of the second run compared with the first."
-    )
-    # Cases of only one run have their rows above.
-    both = [c for c in found.cases if {d.state for d in c.drifts} - {State.NEW, State.GONE}]
-    moved = [(c, d) for c in both for d in c.drifts if d.state is not State.SAME]
-    text = "" if len(moved) <= MOST else f"{len(moved)} profiles differ."
-    return Part(text, [table, drift_table(moved)])
-
-
-def _versions(found: RunComparison) -> Part:
-    if not found.versions:
-        return Part("Both runs have the same command, commit, machine, packages.")
-    rows = [row(*version) for version in found.versions]
-    return Part("", [Table("Differences of provenance.", ["", "first", "second"], rows)])
-
-
-def _times(found: RunComparison) -> Table:
-    rows = []
-    for name, then, now in found.seconds:
-        ratio = Cell("–") if then is None or now is None else Cell(factor(now, then), now / max(then, 1e-9))
-        rows.append(row(name, number(then, seconds), number(now, seconds), ratio))
-    return Table("Seconds of each case.", ["case", "first", "second", "second over first"], rows)
-
-
-def _outcome(outcome: Outcome | None) -> Cell:
-    return Cell("–", None, "nothing", "not claimed") if outcome is None else outcome_cell(outcome)

@@ -7,13 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from headless import browser, page
 from quick_case import coatcheck
 from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
 from verification.regression.number_drift import State
-from verification.regression.run_comparison import compare_runs, comparison_page
+from verification.regression.run_comparison import compare_runs
 from verification.report.report_material import Material
 from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, RunInfo
@@ -118,15 +117,14 @@ def test_a_run_comes_back_from_its_report(tmp_path):
         assert not compare_runs(run_of(GOOD), found).drifted
 
 
-def test_the_command_says_it_by_code_by_words_and_as_a_page(tmp_path):
+def test_the_command_says_it_by_code_and_by_words(tmp_path):
     write(tmp_path / "a", GOOD)
     write(tmp_path / "b", WRONG)
     compare = partial(coatcheck, "compare", cwd=tmp_path)
     assert compare("a", "a").returncode == 0
-    worse = compare("a", "b", "--output", "pages/c.html")
+    worse = compare("a", "b")
     assert worse.returncode == 1
     assert "DISAGREES" in worse.stdout
-    assert (tmp_path / "pages" / "c.html").read_text().startswith("<!DOCTYPE html>")
     back = compare("b", "a", "--json")
     assert back.returncode == 5
     assert json.loads(back.stdout)["worse"] is False
@@ -134,15 +132,3 @@ def test_the_command_says_it_by_code_by_words_and_as_a_page(tmp_path):
     assert gone.returncode == 2
     assert "cannot" in gone.stderr
     assert len(gone.stderr.strip().splitlines()) == 1
-
-
-@pytest.mark.skipif(browser() is None, reason="no Chromium on this machine")
-def test_the_page_fits_a_phone(tmp_path):
-    path = tmp_path / "c.html"
-    path.write_text(comparison_page(compare_runs(run_of(GOOD), run_of(WRONG, replace(GOOD, name="new")))))
-    with page(tmp_path / "profile") as opened:
-        for shown, width in ((path, 390), (path, 1360)):
-            opened.open(shown, width=width)
-            sticking = "document.documentElement.scrollWidth - document.documentElement.clientWidth"
-            assert opened.evaluate(sticking) == 0
-            assert [e for e in opened.events if e["method"] == "Runtime.exceptionThrown"] == []
