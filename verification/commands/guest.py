@@ -125,7 +125,7 @@ def run(
     that cannot be used; 3 no result; 4 inconclusive.
 
     Args:
-        guest: Directory with a guest.toml, that file, or the entry point of an installed guest.
+        guest: Directory with a guest.toml, or that file.
         cases: Names of shipped cases, see coatcheck list, or .toml files; unless given all shipped
             ones, for files those that were packed.
         output: Directory of report.html, report.json, junit.xml, badge.svg; GUEST/report unless given.
@@ -175,7 +175,7 @@ def check(guest: str, /, *, output: Folder = None, jobs: Jobs = None, as_json: A
     a cell, the contact edge. The first problem that is wrong should be corrected first. Exit codes as of run.
 
     Args:
-        guest: Directory with a guest.toml, that file, or the entry point of an installed guest.
+        guest: Directory with a guest.toml, or that file.
         output: Directory of the answers; GUEST/check unless given.
     """
     jobs = worker_count(jobs, 1.0)

@@ -1,4 +1,4 @@
-"""Description of a guest: its ``guest.toml``, or an entry point that leads to one.
+"""Description of a guest: its ``guest.toml``.
 
 name = "my code"
 callable = "adapter:solve"     # or command = ["./adapter"], or results = "answers"
@@ -6,22 +6,19 @@ callable = "adapter:solve"     # or command = ["./adapter"], or results = "answe
 
 import re
 from fnmatch import fnmatchcase
-from importlib.metadata import entry_points
-from importlib.util import find_spec
 from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from verification.cases.toml_file import CaseError, Strict, Text, read_bounded, read_toml
+from verification.cases.toml_file import Strict, Text, read_bounded, read_toml
 from verification.cases.unit_numbers import Seconds
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import QUANTITIES
 from verification.sources.source_registry import SOURCES
 
 FILE = "guest.toml"
-GROUP = "coatcheck.guests"  # of entry points; each names a package with a guest.toml
 LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
 STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
 FORCES = {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "kN": 1e3}
@@ -152,15 +149,13 @@ class Guest(GuestFile):
 
 
 def read_guest(place: str | Path) -> Guest:
-    """The guest in the directory ``place``, in the file ``place``, or of an entry point of that name.
+    """The guest in the directory ``place`` or in the file ``place``.
 
     Raises CaseError naming file and key.
     """
     path = Path(place)
     if path.is_dir():
         path = path / FILE
-    elif not path.exists() and (found := _of_entry_point(str(place))) is not None:
-        path = found
     raw = read_bounded(path, "guest", "one guest; coatcheck guest init writes one")
     return parse_guest(raw, path)
 
@@ -169,20 +164,3 @@ def parse_guest(raw: bytes, path: Path) -> Guest:
     """Check the content of a guest file; ``path`` names it in messages. Raises CaseError."""
     text, checked = read_toml(raw, path, GuestFile)
     return Guest.model_construct(**dict(checked), folder=path.resolve().parent, text=text)
-
-
-def installed_guests() -> dict[str, Path]:
-    """The guest files of installed packages by the name of their entry point."""
-    found = {}
-    for point in entry_points(group=GROUP):
-        spec = find_spec(point.value)
-        if spec is not None and spec.origin is not None:
-            found[point.name] = Path(spec.origin).parent / FILE
-    return found
-
-
-def _of_entry_point(name: str) -> Path | None:
-    try:
-        return installed_guests().get(name)
-    except (ImportError, ValueError) as error:
-        raise CaseError(f"{name}: entry point of the group {GROUP} cannot be found ({error})") from None

@@ -4,7 +4,7 @@ import json
 
 import pytest
 from bench import figures
-from bench.figures import REFERENCE, ROOMS, Figure, Other, groups, measure
+from bench.figures import REFERENCE, Figure, Other, groups, measure
 from bench.turns import HERE, Times
 from cyclopts import App
 
@@ -40,35 +40,6 @@ def test_every_ratio_asked_is_measured():
     assert [limit for (work, _, _), limit in found.items() if work == "more_threads"] == [1.0, 1.0, 1.0]
 
 
-def test_default_run_is_that_of_the_contacts_that_both_commits_have(tmp_path):
-    cases = tmp_path / "verification" / "cases" / "elsewhere"
-    cases.mkdir(parents=True)
-    for name in ("05_ratio_4", "99_unknown_today"):
-        (cases / f"{name}.toml").touch()
-    *_, group = planned(ROOMS, tmp_path)
-    assert {(work.arguments, work.root) for work in group.works.values()} == {
-        (("05_ratio_4",), HERE),
-        (("05_ratio_4",), tmp_path),
-    }
-    (ratio,) = group.ratios
-    assert (ratio.over, ratio.asked) == (ROOMS, 0.6)
-
-
-def test_over_another_commit_nothing_is_asked():
-    assert {over for _, _, over in asked(planned("1234567"))} == {"convolution", "1 thread"}
-    assert {work for work, _, _ in asked(planned("dfc1d79+"))} == {"sphere", "more_threads"}
-
-
-def test_both_commits_do_the_same_work(tmp_path):
-    for group in planned(root=tmp_path, fast=True):
-        before = group.works.get(REFERENCE)
-        if before is not None:
-            ours = next(iter(group.works.values()))
-            assert (before.name, before.arguments, before.root) == (ours.name, ours.arguments, tmp_path)
-            assert group.processor
-            assert ours.root == HERE
-
-
 def test_ratios_are_taken_turn_by_turn_of_the_clock_of_the_group(monkeypatch):
     group, *_ = planned()
     ours, before = group.works
@@ -83,34 +54,6 @@ def test_ratios_are_taken_turn_by_turn_of_the_clock_of_the_group(monkeypatch):
     assert figure.missed
     assert not Figure(ours, REFERENCE, 0.5, (0.5,)).missed
     assert not Figure(ours, "1234567", None, (5.0,)).missed
-
-
-def test_of_works_that_may_be_equal_a_cost_is_missed_where_every_turn_shows_it(monkeypatch):
-    (group,) = groups(("contact",), other=None, sizes=(512,))
-
-    def missed(*ratios):
-        times = {name: Times((1.0,), (1.0,), 0.0, 0.0) for name in group.works}
-        times["N = 512, 2 threads, in one process"] = Times((1.0,), (1.0,), 0.0, 0.0, ratios)
-        monkeypatch.setattr(figures, "in_turn", lambda works, rounds, progress: times)
-        (figure,) = (one for one in measure(group, 1) if one.over == "1 thread")
-        assert figure.ratios == ratios
-        return figure.missed
-
-    assert missed(1.01, 1.02, 1.001)
-    assert not missed(1.01, 1.02, 0.999)
-
-
-def test_peak_memory_is_counted_and_a_solver_that_misses_the_judge_is_a_figure_missed(monkeypatch):
-    (group,) = groups(("contact",), other=None, sizes=(512,), threads=(2,), peers=("tamaas",))
-    times = {name: Times((1.0,), (2.0,), 16.0 * 512**2, 0.0) for name in group.works}
-    times["tamaas, N = 512, 2 threads"] = Times((4.0,), (1.0,), 0.0, 3e-6)
-    monkeypatch.setattr(figures, "in_turn", lambda works, rounds, progress: times)
-    found = {(figure.name, figure.over): figure for figure in measure(group, 1)}
-    assert found["contact, N = 512, 2 threads", "tamaas"].ratios == (0.25,)
-    assert found["peak memory, contact, N = 512, 2 threads", "N x N doubles"].ratios == (2.0,)
-    residual = found["residual, tamaas, N = 512, 2 threads", "judge"]
-    assert residual.median == pytest.approx(3)
-    assert residual.missed
 
 
 app = App(result_action="return_value")

@@ -1,15 +1,9 @@
 """Children of the benchmark: in turn, each on the packages of its own commit, failures with their message."""
 
-import subprocess
-import sys
-from importlib import metadata
-from itertools import count
-
 import ducc0
 import numpy as np
 import pytest
-from bench import checkout as places
-from bench import child, turns
+from bench import turns
 from bench.judge import LIMIT, centres, residual
 from bench.peers import SOLVERS
 from bench.turns import Work, in_turn
@@ -46,54 +40,6 @@ def test_a_child_solves_another_problem_in_each_turn(commit):
     assert found.of(True) == found.processor
 
 
-def test_a_child_on_another_package_than_its_commit_fails(tmp_path):
-    (tmp_path / "fem_reference.py").write_text("raise OSError('no mesh')")
-    with pytest.raises(RuntimeError, match="OSError"):
-        in_turn({"elements": Work("elements", (0.0, False), tmp_path)}, 1)
-
-
-RUN = """
-import sys
-from pathlib import Path
-Path(__file__).with_name("log").write_text(sys.argv[2])
-Path(sys.argv[-1], "report.json").touch()
-"""
-
-
-def test_the_default_run_is_that_of_its_commit_wherever_the_benchmark_is_started(tmp_path, monkeypatch):
-    case = tmp_path / "verification" / "cases" / "contact" / "01_case.toml"
-    case.parent.mkdir(parents=True)
-    case.touch()
-    (tmp_path / "verification" / "cli.py").write_text(RUN)
-    monkeypatch.chdir(turns.HERE)  # where another program of the same name lies
-    in_turn({"there": Work("default_run", ("01_case",), tmp_path)}, 1)
-    assert (tmp_path / "verification" / "log").read_text() == str(case)
-
-
-@pytest.mark.parametrize(("enough", "calls"), [(0.0, 1), (8.0, 3)])
-def test_the_quickest_of_the_calls_begun_in_a_short_time_counts(enough, calls, monkeypatch):
-    lasting, now = [5.0, 1.0, 7.0], [0.0]
-    results = iter(range(3))
-
-    def work():
-        now[0] += lasting[k := next(results)]
-        return k
-
-    monkeypatch.setattr(child.time, "perf_counter", lambda: now[0])
-    result, answer = child.timed(work, enough)
-    assert result == calls - 1
-    assert answer["seconds"] == min(lasting[:calls])
-
-
-def test_a_hidden_distribution_is_not_installed(monkeypatch):
-    monkeypatch.setattr(metadata.Distribution, "from_name", metadata.Distribution.from_name)
-    monkeypatch.setitem(sys.modules, "numpy", sys.modules["numpy"])
-    child.hide("numpy")
-    assert metadata.version("scipy")
-    with pytest.raises(metadata.PackageNotFoundError, match="numpy"):
-        metadata.files("numpy")
-
-
 def test_turns_alternate_and_end_after_long(monkeypatch):
     seen = []
 
@@ -116,47 +62,6 @@ def test_turns_alternate_and_end_after_long(monkeypatch):
     in_turn(works, 2)
     assert seen == ["A0", "B0", "A1", "B1", "A2", "B2", "Ajudge", "Bjudge", "B ended", "A ended"]
     assert len(in_turn(works, 5, enough=-1.0)["A"].seconds) == 1
-
-
-def test_a_commit_is_checked_out_aside_and_a_folder_is_used_as_it_is(commit, monkeypatch):
-    def git(*words):
-        return subprocess.run(
-            ["git", "-c", "user.name=n", "-c", "user.email=e", *words],
-            cwd=commit,
-            check=True,
-            capture_output=True,
-            text=True,
-        ).stdout
-
-    git("init", "--quiet")
-    git("add", ".")
-    git("commit", "--quiet", "-m", "first")
-    name = git("rev-parse", "HEAD")[:7]
-    monkeypatch.setattr(places, "HERE", commit)
-    with places.checkout("HEAD") as (found, folder):
-        assert found == name
-        assert (folder / "semianalytic" / "__init__.py").read_text() == PACKAGE
-    assert not folder.exists()
-    with places.checkout(str(commit)) as (found, folder):
-        assert (found, folder) == (name, commit.resolve())
-    with pytest.raises(ValueError, match="commit"), places.checkout("--nothing"):
-        pass
-
-
-def test_a_second_thread_is_measured_in_one_process(monkeypatch):
-    """By a solver that takes half as long again on two threads, and longer each time."""
-    clock, calls = [0.0], count()
-
-    def solved(patches, threads):
-        clock[0] += {1: 1.0, 2: 1.5}[threads] * (1 + 0.01 * next(calls))
-
-    monkeypatch.setitem(SOLVERS, "contact", solved)
-    monkeypatch.setattr(child.time, "perf_counter", lambda: clock[0])
-    assert child.more_threads(1, 512, 1, 2)() == pytest.approx(1.5)
-    taken = clock[0]
-    assert taken > child.LONG
-    child.more_threads(0, 512, 1, 2)()
-    assert clock[0] - taken < child.LONG
 
 
 def test_a_second_thread_is_not_used_where_it_costs_time(monkeypatch):

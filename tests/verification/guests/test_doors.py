@@ -11,12 +11,11 @@ from quick_case import coatcheck
 
 import verification
 from verification.cases.case_file import read_case, shipped_cases
-from verification.cases.toml_file import CaseError
 from verification.guests.case_exam import claims_of, prepare, question_of
 from verification.guests.doors.ask_guest import answered
 from verification.guests.doors.file_door import pack, read_answer
 from verification.guests.exam_subjects import PLANE, REFERENCE, subject_of
-from verification.guests.guest_description import GROUP, installed_guests, read_guest
+from verification.guests.guest_description import read_guest
 from verification.guests.guest_protocol import ProtocolError, schema
 from verification.guests.guest_verdicts import judged
 from verification.judging.verdict import Outcome
@@ -175,19 +174,6 @@ def test_a_guest_file_that_cannot_be_used_is_code_2_with_one_message(tmp_path, t
     assert done.returncode == 2
     assert words in done.stderr
     assert len(done.stderr.strip().splitlines()) == 1
-
-
-def test_a_guest_of_an_installed_package_is_found_by_its_name(tmp_path, monkeypatch):
-    shutil.copytree(EXAMPLES / "start", tmp_path / "their_package")
-    record = tmp_path / "their_package-1.0.dist-info"
-    record.mkdir()
-    (record / "METADATA").write_text("Metadata-Version: 2.1\nName: their_package\nVersion: 1.0\n")
-    (record / "entry_points.txt").write_text(f"[{GROUP}]\ntheir_code = their_package\n")
-    with pytest.raises(CaseError, match="their_code"):
-        read_guest("their_code")
-    monkeypatch.syspath_prepend(str(tmp_path))
-    assert installed_guests() == {"their_code": tmp_path / "their_package" / "guest.toml"}
-    assert read_guest("their_code").folder == tmp_path / "their_package"
 
 
 def test_exit_codes_of_a_guest(tmp_path):
