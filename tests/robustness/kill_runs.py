@@ -1,4 +1,4 @@
-"""Runs killed with kill -9 at random moments and resumed; two run directories compared number by number.
+"""Runs killed with kill -9 at random moments and resumed; what a run directory holds but for the times.
 
 Every second kill takes the run alone, the others its workers too; every third waits for a half-written file.
 """
@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -97,53 +97,13 @@ def disturbed(output: Path, cases: Sequence[str], kills: int, longest: float, jo
     return number + killed
 
 
-def numbers(node: Any, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
-    """Every leaf of a stored result but the times."""
+def measured(node: Any) -> Any:
+    """A stored result without the times."""
     if isinstance(node, dict):
-        for key, value in node.items():
-            if key not in TIMES:
-                yield from numbers(value, (*path, key))
-    elif isinstance(node, list):
-        for n, value in enumerate(node):
-            yield from numbers(value, (*path, str(n)))
-    else:
-        yield path, node
+        return {key: measured(value) for key, value in node.items() if key not in TIMES}
+    return [measured(value) for value in node] if isinstance(node, list) else node
 
 
-def scale_of(payload: dict[str, Any], path: tuple[str, ...], value: float) -> float:
-    """What a difference of the number at ``path`` is divided by: the scale that verdicts use, or itself."""
-    scales = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
-    if path[0] in ("verdicts", "invariants", "conversions"):
-        return 1.0  # fractions of such scales already
-    if path[0] == "profiles" and path[2] in ("value", "uncertainty"):
-        return payload["problem"][scales.get(payload["profiles"][int(path[1])]["quantity"], "p_h")]
-    if path[0] == "sources" and "budget" in path:
-        return payload["problem"][
-            scales.get(payload["sources"][int(path[1])]["budget"][int(path[3])][0], "p_h")
-        ]
-    return abs(value)
-
-
-def largest_difference(one: Path, other: Path) -> tuple[float, int]:
-    """Largest difference of the numbers of two run directories over their scales, and how many there were.
-
-    Infinite where anything else differs: a verdict, a name, the number of values. Messages, which state
-    figures in words, are not compared.
-    """
-    largest, count = 0.0, 0
-    names = [{p.relative_to(folder) for p in folder.glob("cases/*.json")} for folder in (one, other)]
-    if names[0] != names[1] or not names[0]:
-        return float("inf"), 0
-    for name in sorted(names[0]):
-        payload = read_checked(one / name)
-        a, b = dict(numbers(payload)), dict(numbers(read_checked(other / name)))
-        if a.keys() != b.keys():
-            return float("inf"), count
-        count += len(a)
-        for path, value in a.items():
-            if value == b[path] or path[-1] in ("reason", "message"):
-                continue
-            if not (isinstance(value, float) and isinstance(b[path], float)):
-                return float("inf"), count
-            largest = max(largest, abs(value - b[path]) / scale_of(payload, path, value))
-    return largest, count
+def cases_of(output: Path) -> dict[str, Any]:
+    """Every stored case of a run directory without the times, by its name."""
+    return {path.name: measured(read_checked(path)) for path in sorted(output.glob("cases/*.json"))}

@@ -1,7 +1,6 @@
 """The command line as people expect it: examples, exit codes, completion, plain pipes, a stop that keeps."""
 
 import io
-import json
 import re
 import shutil
 import signal
@@ -213,26 +212,6 @@ def test_ctrl_c_keeps_what_was_done_and_says_so(tmp_path):
     again = coatcheck("run", "quick.toml", "--output", "out", "--resume", "--json", cwd=tmp_path)
     assert again.returncode == 0, again.stderr
     assert kept.stat().st_mtime_ns == written
-
-
-def test_the_report_of_a_stored_run_is_written_again(stored, capsys):
-    code, out, _ = asked(capsys, "report", stored, "--json")
-    assert code == 0
-    (page,) = json.loads(out)["files"]
-    first = (stored / "report.html").read_text(encoding="utf-8")
-    assert page == str(stored / "report.html")
-    # The order and the particulars of the run it was.
-    assert first.index("Case &lt;second&gt;") < first.index("Case &lt;first&gt;")
-    assert INFO.started.split("T")[0] in first
-    assert asked(capsys, "report", stored, "-q") == (0, "", "")
-    assert (stored / "report.html").read_text(encoding="utf-8") == first
-
-
-def test_a_stopped_run_has_a_report_of_what_there_is(stored, capsys):
-    (stored / "report.json").unlink()
-    assert asked(capsys, "report", stored)[0] == 0
-    text = (stored / "report.html").read_text(encoding="utf-8")
-    assert text.count('<article class="page case') == 2
 
 
 @pytest.mark.parametrize("spoiled", ["flipped", "cut", "text"])
