@@ -9,6 +9,7 @@ that it depends neither on the order of the answers nor on interruptions.
 import json
 import os
 import time
+import uuid
 from collections.abc import Callable, Iterator
 from contextlib import closing, nullcontext
 from dataclasses import dataclass, field
@@ -183,7 +184,8 @@ class _Run:
     def _requests(self, waiting: Iterator[Solve]) -> Iterator[tuple[str, dict[str, Any], Solve]]:
         for one in waiting:
             self._note("sent", one)
-            yield f"{one.source}-{one.key}", one.request, one
+            # A key of its own: a worker may still be at the same solve of a study that was stopped.
+            yield f"{one.source}-{one.key}-{uuid.uuid4().hex}", one.request, one
 
     def _take(self, one: Solve, found: dict[str, Any] | Lost) -> None:
         if isinstance(found, Lost):
