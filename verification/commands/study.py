@@ -1,5 +1,6 @@
 """coatcheck study: parameter studies on Dask."""
 
+import os
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 
 LABELS = {name: source.label for name, source in SOURCES.items()}
 FIGURE_GROUPS = 5
+BUSY = 1.5  # processes a core, beyond which the forecast states the time beside them
 
 
 @Parameter(name="*")
@@ -175,9 +177,15 @@ def _forecast(chosen: Study, output: Path, jobs: int | None, limit: int | None) 
         parts.append(
             f"{expected.solves} {LABELS[source]}" + (f" ({stored} of them stored)" if stored else "")
         )
-    about = f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
     what = f"{chosen.title}: solves: {', '.join(parts)}, then figures"
-    return f"{what}; about {about} on {processes} idle cores"
+    # each process gets its share of the cores beside what else runs now
+    shares = (os.getloadavg()[0] + processes) / cores()
+    beside = f", {_rounded(seconds * shares)} beside the present load" if shares > BUSY else ""
+    return f"{what}; about {_rounded(seconds)} on {processes} idle cores{beside}"
+
+
+def _rounded(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
 
 
 def _page(
