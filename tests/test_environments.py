@@ -1,7 +1,8 @@
 """Commands of the README and the manual, each in an environment with exactly the extras that its line names.
 
 The environments are built once, in COATCHECK_ENVIRONMENTS or build/environments, for each content of
-constraints.txt and pyproject.toml. Long commands run on one case, see ``QUICK``.
+constraints.txt and pyproject.toml. Long commands run on one case, see ``QUICK``. Names of tests contain the
+extras, or none, so that ``-k none`` runs one environment alone: continuous integration takes turns.
 """
 
 import hashlib
@@ -82,7 +83,7 @@ def test_commands_of_the_pages_are_found():
 
 @pytest.mark.slow
 @pytest.mark.timeout(1800)  # the first one with an extra installs it
-@pytest.mark.parametrize(("extras", "words"), commands())
+@pytest.mark.parametrize(("extras", "words"), commands(), ids=[f"{e or 'none'}: {w}" for e, w in commands()])
 def test_a_command_runs_with_the_extras_that_its_line_names(extras, words, folder):
     programs = environment(extras)
     variables = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {"OMP_NUM_THREADS": "1"}
