@@ -233,8 +233,12 @@ class _Layers:
     def _surface(self) -> Located:
         """The largest tension of the surface, with the cusp at the contact edge as a candidate."""
         search = Search(self.solution, self.problem)
-        sigma, U = stress_with_uncertainty(self.solution, search.x, 0.0, 0.0, layer=0)
-        found = search.largest(sigma[0, 0], None if U is None else U[0, 0])
+        # the search needs uncertainties around the edges alone, and states its own elsewhere
+        value = self.solution.stress(search.x, 0.0, 0.0, layer=0)[0, 0]
+        _, around = stress_with_uncertainty(self.solution, search.x[search.edges], 0.0, 0.0, layer=0)
+        U = np.full_like(value, np.nan)
+        U[search.edges] = np.nan if around is None else around[0, 0]
+        found = search.largest(value, None if around is None else U)
         spread = float("nan") if found.uncertainty is None else found.uncertainty
         total = found.value + float(self.added(0, 0)[XX])
         return self._shown(Located(total, spread, found.place, 0.0), 0)

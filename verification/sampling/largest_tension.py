@@ -58,8 +58,13 @@ class Search:
         branches = [side * _radius(a, t) for side, t in self._branches]
         return np.concatenate([*branches, *(side * around_edge(self.solution) for side in self._sides)])
 
+    @property
+    def edges(self) -> slice:
+        """Of the samples, those around the edges."""
+        return slice(-5 * len(self._sides), None)
+
     def largest(self, value: Array, U: Array | None) -> Tension:
-        """The largest tension from sigma_xx [Pa] at ``x`` with its uncertainty."""
+        """The largest tension from sigma_xx [Pa] at ``x``; its uncertainty counts at ``edges`` alone."""
         if not np.isfinite(value).all():
             return Tension(np.nan, np.nan, None if U is None else np.nan, None if U is None else np.nan)
         a = float(self.solution.contact_radius)
