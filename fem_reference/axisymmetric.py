@@ -39,6 +39,7 @@ from .mesh import MeridianMesh
 
 __all__ = ["ELEMENTS", "Discretisation", "Skeleton", "elasticity", "strain_operator"]
 
+_AT_ONCE = 512  # triangles whose matrices are made at once: more take longer, for fresh memory
 ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
 
@@ -152,26 +153,30 @@ class Discretisation:
 
         That factor is 2 pi for harmonic 0, pi for others. ``materials`` = (E, nu) per layer.
         """
-        return _assembled(*self._elements(materials, harmonic))
+        return _assembled(*self._elements(materials, harmonic, slice(None)))
 
     def skeleton(self, materials: tuple[tuple[float, float], ...], harmonic: float) -> "Skeleton":
         """The same without the unknowns inside the triangles."""
-        K, numbers = self._elements(materials, harmonic)
-        fields = numbers.shape[1] // self.basis.Nbfun
+        fields = 3 if harmonic else 2
         inside = np.arange(self.basis.Nbfun) >= self.basis.Nbfun - self.basis.elem.interior_dofs
         i, o = np.flatnonzero(np.tile(inside, fields)), np.flatnonzero(np.tile(~inside, fields))
-        K_io = K[:, i[:, None], o]
-        extension = -np.linalg.solve(K[:, i[:, None], i], K_io)
-        K_o = K[:, o[:, None], o]
-        del K  # large, as is what follows
-        K_o += K_io.transpose(0, 2, 1) @ extension
-        inner, outer = numbers[:, i], numbers[:, o]
-        return Skeleton(_assembled(K_o, outer, fields * self.N), inner, outer, extension)
+        triangles = self.mesh.layer.size
+        matrix = np.empty((triangles, o.size, o.size))
+        extension = np.empty((triangles, i.size, o.size))
+        inner, outer = (np.empty((triangles, of.size), dtype=np.int32) for of in (i, o))
+        for begin in range(0, triangles, _AT_ONCE):
+            some = slice(begin, begin + _AT_ONCE)
+            K, numbers = self._elements(materials, harmonic, some)
+            inner[some], outer[some] = numbers[:, i], numbers[:, o]
+            K_io = K[:, i[:, None], o]
+            extension[some] = -np.linalg.solve(K[:, i[:, None], i], K_io)
+            matrix[some] = K[:, o[:, None], o] + K_io.transpose(0, 2, 1) @ extension[some]
+        return Skeleton(_assembled(matrix, outer, fields * self.N), inner, outer, extension)
 
     def _elements(
-        self, materials: tuple[tuple[float, float], ...], harmonic: float
+        self, materials: tuple[tuple[float, float], ...], harmonic: float, some: slice
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Stiffness (m, size, size) of the triangles and the numbers (m, size) of their unknowns.
+        """Stiffness (m, size, size) of ``some`` triangles and the numbers (m, size) of their unknowns.
 
         With s = (dphi/dr, dphi/dz, phi/r) of the shape functions and a, b = r, z, 0, the fields f and g of
         the functions i and j are coupled by
@@ -180,7 +185,14 @@ class Discretisation:
 
         by quadrature that is exact but for the terms in 1/r.
         """
-        basis = Basis(self.triangulation, ELEMENTS[self.order](), intorder=2 * self.order)
+        layer, cells = self.mesh.layer[some], np.arange(self.mesh.layer.size)[some]
+        basis = Basis(
+            self.triangulation,
+            ELEMENTS[self.order](),
+            intorder=2 * self.order,
+            elements=cells,
+            dofs=self.basis.dofs,
+        )
         r = np.asarray(basis.global_coordinates())[0]
         root = np.sqrt(r * basis.dx)
         s = np.empty((len(r), basis.Nbfun, 3, r.shape[1]))
@@ -189,7 +201,7 @@ class Discretisation:
 
         A = np.stack(strain_operator(harmonic))
         D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])
-        coupling = np.einsum("asf,lst,btg->lfgab", A, D, A, optimize=True)[self.mesh.layer]
+        coupling = np.einsum("asf,lst,btg->lfgab", A, D, A, optimize=True)[layer]
         fields, rows = A.shape[2], s.reshape(*s.shape[:2], -1)
         K = np.empty((len(r), fields, basis.Nbfun, fields, basis.Nbfun))
         for f in range(fields):

@@ -33,7 +33,7 @@ from functools import cached_property
 import numpy as np
 
 from .companion_points import REACH, ComparisonPoints, Pair, Uncached, largest_around, samples
-from .contact import FixedRadiusContact, edge_coefficients, peak
+from .contact import FixedRadiusContact, peak
 from .levels import COMPANION, ContactLevels
 from .location import LocatedPoints
 from .recovery import HarmonicField
@@ -250,7 +250,7 @@ def contact_estimates(
         ElasticState.of_contact(state.solid, companion, body)
         for state, body in zip(states, bodies, strict=False)
     ]
-    edge, other_edge = (_edge_displacement(contact) for contact in (final, companion))
+    edge, other_edge = final.edge_displacement, companion.edge_displacement
     # what the displaced edges leave of the difference of the radii is due to all other triangles
     changes = abs((a - other_a) + (edge - other_edge)), abs(approach - other_approach)
     found = tuple(
@@ -362,15 +362,6 @@ def _functional_factor(order: int, size: float) -> float:
 
 def _coarseness(size: float) -> float:
     return max(1.0, size / _ASYMPTOTIC_SIZE)
-
-
-def _edge_displacement(contact: FixedRadiusContact) -> float:
-    """Distance by which the last triangles displace the edge of the pressure, outwards.
-
-    p ~ sqrt(a + displacement - r) is c [d^(1/2) + displacement/2 d^(-1/2)] at distances d = a - r beyond it.
-    """
-    singular, root = edge_coefficients(contact.pressure, contact.discretisation.mesh)
-    return 2 * singular / root
 
 
 def _at_load(contact: FixedRadiusContact, load: float) -> tuple[float, float]:

@@ -27,7 +27,7 @@ __all__ = [
     "solve_levels",
 ]
 
-# One row of triangles in a coating: the radius is good to 1e-4, from where the companion takes two solves.
+# One row of triangles in a coating: the radius is good to 1e-5, from where the companion takes one solve.
 _COARSE = Grading.of(0.5, rows=1.0)
 _OF_COMPANION = 1e-5  # tolerance of its load, which the estimate takes into account: one solve instead of two
 _STRETCH = 1.3  # largest factor by which radii are stretched before a new mesh is generated
@@ -97,8 +97,9 @@ def solve_levels(
                 f"{a:.4g} a_h, the load is {W / load:.6g} of the required one; raise max_iterations, or "
                 "check the thicknesses and the ratio of the moduli"
             )
-        found[name], a = contact, contact.radius_at(load)
-    return ContactLevels(found["final"], found.get("companion"), tuple(history))
+        found[name] = contact
+        a = contact.radius_at(load) + contact.edge_displacement  # which is smaller on the next
+    return ContactLevels(found["final"].at_load(load), found.get("companion"), tuple(history))
 
 
 def find_contact_radius(
@@ -114,7 +115,7 @@ def find_contact_radius(
 
     The load of a rigid paraboloid rises with the contact radius, W ~ a^3 on a homogeneous solid, so log W is
     nearly linear in log a and Newton's method with the slope d log W / d log a, which every solution gives to
-    a hundredth (``contact``), converges in a few steps. Small steps stretch the meshes, large ones make new
+    some thousandths (``contact``), converges in a few steps. Small steps stretch the meshes, large ones make new
     ones.
 
     meshes_at : contact radius -> meshes with a vertex there.  solve_on : meshes -> contact with their radius

@@ -28,7 +28,7 @@ EDGE_SIZE = 1e-7  # smallest triangle, at the contact edge, over the contact rad
 _FAN = 0.94
 # Sizes are uniform to this depth over the contact radius, then grow by this share a unit of the stretched
 # plane; to that of all coatings, then more slowly, since a stack bends beyond its own depth.
-_NEAR, _GROWTH = 3.0, 0.4
+_NEAR, _GROWTH = 2.0, 0.6
 # Films buried at many times their thickness are left to flat triangles: the least size for the sake of a
 # coating over the usual one.
 _LEAST_ROW = 0.25

@@ -40,15 +40,15 @@ _POWERS = np.array([-0.5, 0.5, 1.0, 1.5, 2.0])
 _ODD = ([0], [3]), ([2], [0, 1, 2, 4])
 
 
-def edge_distances(mesh: MeridianMesh) -> np.ndarray:
-    """Distances from the edge at which the series is fitted, over the smallest of them.
+def edge_distances(mesh: MeridianMesh, farther: float = 1.0) -> np.ndarray:
+    """Distances from the edge over ``EDGE_SIZE`` times the radius, at which its series is fitted.
 
-    A film on the surface limits the series to distances far below its thickness.
+    Those of ``EDGE_SERIES``, times ``farther``; far below the thickness of a film on the surface.
     """
     smallest, largest = EDGE_SERIES
     thickness = (mesh.length / mesh.contact_radius) ** 2  # of the thinnest film on top, over a
-    film = 0.05 * thickness / EDGE_SIZE
-    return np.geomspace(1.0, max(min(largest, film), 5 * smallest) / smallest, 32)
+    end = max(min(farther * largest, 0.05 * thickness / EDGE_SIZE), 5 * smallest)
+    return np.geomspace(max(smallest, end * smallest / largest), end, 32)
 
 
 def _shapes(basis: Basis, at: LocatedPoints) -> np.ndarray:
@@ -135,7 +135,7 @@ class HarmonicField:
         """Coefficients (1 + 2 powers, strains) of the surface strains: edge value, powers inside, outside."""
         d = self.discretisation
         a = d.mesh.contact_radius
-        distance = edge_distances(d.mesh)
+        distance = edge_distances(d.mesh) / EDGE_SERIES[0]
         r = a + a * EDGE_SIZE * EDGE_SERIES[0] * np.concatenate([-distance, distance])
         zero = np.zeros(r.size, dtype=int)
         _, strain = self._fields_and_strains(d.locator.points(r, 0.0 * r, zero))
