@@ -115,8 +115,8 @@ def find_contact_radius(
 
     The load of a rigid paraboloid rises with the contact radius, W ~ a^3 on a homogeneous solid, so log W is
     nearly linear in log a and Newton's method with the slope d log W / d log a, which every solution gives to
-    some thousandths (``contact``), converges in a few steps. Small steps stretch the meshes, large ones make new
-    ones.
+    some thousandths (``contact``), converges in a few steps. Small steps stretch the meshes, large ones make
+    new ones.
 
     meshes_at : contact radius -> meshes with a vertex there.  solve_on : meshes -> contact with their radius
     Returns the last contact and (contact radius, load) of every solve; after ``max_iterations``, or where the
