@@ -84,7 +84,7 @@ def discretised(solid: LayeredSolid, size: float, surface: float, order: int) ->
         1.9 * size,
         size,
         size,
-        far_size=min(2 * size, 0.7),
+        far_size=min(1.5 * size, 0.7),
         film_size=2 * size,
         rows=0.8 / size,
         surface=surface,

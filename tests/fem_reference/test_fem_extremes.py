@@ -21,6 +21,7 @@ SOLIDS = {
     "E1/E2 = 100": coated(100.0),
     "E1/E2 = 1e4": coated(1e4),
     "nu = 0.4999": coated(0.5, nu=0.4999),
+    "nu = 0.4999, thin": coated(0.5, 0.1, nu=0.4999),
     "nu = 0.4999 of the substrate": coated(2.0, substrate=(210e9, 0.4999)),
     "soft ball": coated(4.0, ball=(2.1e9, 0.4, ())),
     "coated ball": coated(4.0, 0.5, ball=(300e9, 0.25, ((600e9, 0.25, 0.3 * A_H),))),
