@@ -6,8 +6,8 @@ The difference of two solutions crosses zero along lines where neither is exact,
 point: the estimate at a vertex is the largest difference in the rings of triangles around it, further rings
 counting by the shares of ``REACH``, and between vertices it is linear. Triangles grow with the distance from
 the contact edge and with depth, and so does the neighbourhood. For stresses all of the largest difference
-counts, times 1.25: a thin coating, an interface, the axis keep the mesher from the ratio of sizes that it was
-asked for. For pressure and scalars Roache's estimate (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9)
+counts: a thin coating, an interface, the axis keep the mesher from the ratio of sizes that it was asked for.
+For pressure and scalars Roache's estimate (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9)
 
     U = SAFETY |difference| / (ratio^order - 1)
 
@@ -49,8 +49,6 @@ SAFETY = 3.0
 _ASYMPTOTIC_SIZE = 0.18
 # The displacement of the field is part of the estimate within this distance of the edge over the radius.
 _STRIP = 0.3
-# At some places the final mesh is the worse one: its error is all the difference, or somewhat more.
-_OF_STRESS = 1.25
 # zz, rz, tz: one value on both sides of an interface, in error by that of either side
 _TRACTIONS = [2, 3, 5]
 
@@ -334,7 +332,7 @@ def estimates(
         state.normal,
         companion.normal,
         points,
-        _OF_STRESS * _coarseness(size) ** 2,
+        _coarseness(size) ** 2,
         SAFETY / (COMPANION ** (d.order + 1) - 1) * _coarseness(size) ** 2,
         radius_error,
         relative,

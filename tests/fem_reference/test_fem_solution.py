@@ -241,12 +241,12 @@ def test_the_companion_is_coarser_everywhere_by_one_factor(size):
         assert companion[name] / final[name] == pytest.approx(COMPANION), name
 
 
-def test_estimate_is_at_least_five_quarters_of_the_change_from_the_companion():
+def test_estimate_is_at_least_the_change_from_the_companion():
     # at some places the final mesh is the worse one, and all the change is its error
     found = solved("sphere").bodies[0].estimates.normal
     final, companion = found.points.triangles
     change = np.abs(found.field(final)[1] - found.companion(companion)[1])
-    assert np.all(found._error((final, companion))[:6] >= 1.25 * change)
+    assert np.all(found._error((final, companion))[:6] >= change)
     # a vertex of a plane has the stresses of two cells, of which samples next to it see either
     vertices = found.points.final.contact_vertices
     cells = samples(vertices).reshape(vertices.size - 1, -1)
