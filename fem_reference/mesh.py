@@ -65,7 +65,7 @@ class Grading:
     surface: float = 0.0
 
     @classmethod
-    def of(cls, size: float, edge_size: float = EDGE_SIZE, rows: float = 2.8) -> "Grading":
+    def of(cls, size: float, edge_size: float = EDGE_SIZE, rows: float = 2.6) -> "Grading":
         """All sizes from one; the fan at the edge and the far field need less fine triangles."""
         edge_rate, far = min(1.4 * size, _LARGEST_AT_EDGE), min(2.7 * size, _LARGEST_FAR)
         return cls(size, edge_rate, edge_size, 0.65 * size, far_size=far, film_size=far, rows=rows)
