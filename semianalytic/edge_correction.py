@@ -34,7 +34,11 @@ LOST = 0.2  # of the load, the most that constant patches miss of a pressure wit
 INNER = 3e-3  # of the peak, that f may miss inside: ellipses 3e-5, a kink of the indenter's slope 0.1
 OUTER_TERMS = 6  # polynomials of a pressure that is fitted near the edge alone
 NARROW = 5  # patches between centre and edge, below which the edge is not resolved
-FEW, MOST = 3, 60  # polynomials
+# polynomials: of an uncoated body; of a layer, the second number for each of asinh(1/e)
+FEW, LAYERED = 3, (6.0, 4.6)
+LAYER = 7.0  # e over h/a: 4 is best for one coating, 8 for a stack, whose images lie farther away too
+RESOLVED = 1.75  # polynomials for each sqrt(patches in a times e asinh(1/e)); under stacks 2 did not converge
+THICK = 100.0  # e of a layer so thick that it does not matter
 
 
 def corrected(problem: LevelProblem, start: Shape | None) -> Level:
@@ -44,7 +48,7 @@ def corrected(problem: LevelProblem, start: Shape | None) -> Level:
     """
     gap = problem.gap
     if start is not None:
-        terms = OUTER_TERMS if start.outside else _terms(problem, start.axes)
+        terms = OUTER_TERMS if start.outside else _terms(start, problem.grid.d)
         level = _rounds(problem, gap, start.with_terms(terms), None)
         if level is not None:
             return level
@@ -132,7 +136,10 @@ def _start(problem: LevelProblem, p: Array) -> Shape | None:
     shape = edge_shape.start(whole, xs[0][:, None], xs[1], harmonics, FEW, grid.d**2)
     if min(shape.axes) < NARROW * grid.d or not _is_island(whole > 0):
         return None
-    return shape.with_terms(_terms(problem, shape.axes))
+    both = problem.body.response
+    layer = LAYER * both.depth / min(shape.axes) if both else np.inf
+    shape = replace(shape, layer=layer if layer < THICK else np.inf)
+    return shape.with_terms(_terms(shape, grid.d))
 
 
 def _is_island(loaded: NDArray[np.bool_]) -> bool:
@@ -145,19 +152,19 @@ def _is_island(loaded: NDArray[np.bool_]) -> bool:
     return bool(loaded.any())
 
 
-def _terms(problem: LevelProblem, axes: tuple[float, float]) -> int:
-    """Polynomials of q: its singularities lie 2 h beyond the edge, h the depth of what reflects.
+def _terms(shape: Shape, d: float) -> int:
+    """Polynomials of q on patches of side ``d`` [m].
 
-    Of an analytic function the error falls as exp(-c M sqrt(h/a)): Boyd, Chebyshev and Fourier Spectral
-    Methods (2001), section 2. More than the patches resolve would fit their errors, ten times as large at
-    the edge: the last polynomial changes sign a quarter of a patch from the edge, t = (1.2/M)^2, or further
-    away.
+    Of an analytic function the error falls as exp(-c M), c from the distance of its singularities (Boyd,
+    Chebyshev and Fourier Spectral Methods (2001), section 2), here over the length asinh(1/e). More than the
+    patches resolve would fit their errors: the zero of the last polynomial next to the edge,
+    t = 1.4 e asinh(1/e)/M^2, is to be no nearer than a quarter of a patch.
     """
-    both, d, a = problem.body.response, problem.grid.d, min(axes)
-    depth = both.depth if both else np.inf
-    terms = 0.6 * (6 + 6 * np.sqrt(a / depth))
-    most = 12.0 if unresolved(problem.body, d) else MOST
-    return int(max(FEW, min(terms, most, a / (4 * d), 1.5 * np.sqrt(a / d))))
+    patches, e = min(shape.axes) / d, shape.layer
+    length = 0.0 if np.isinf(e) else float(np.arcsinh(1 / e))
+    wanted = FEW if np.isinf(e) else LAYERED[0] + LAYERED[1] * length
+    rate = 1.0 if np.isinf(e) else e * length
+    return int(max(FEW, min(wanted, patches / 4, RESOLVED * np.sqrt(rate * patches))))
 
 
 def unresolved(body: Body, d: float) -> bool:

@@ -21,7 +21,7 @@ __all__ = ["Indenter", "Level", "LevelProblem"]
 Array = NDArray[np.floating]
 
 SINGLE = 2**20  # patches, above which preconditioner and steps are of single precision,
-SMOOTH = 0.02  # error of the radius at a smooth edge, over M d^2/a with M polynomials: observed at most 0.013
+SMOOTH = 0.01  # error of the radius at a smooth edge, over M d^2/a with M polynomials: observed at most 0.005
 RIPPLE = 3e-4  # of the peak pressure
 LOOSE = 1e-8  # at this tolerance or above: the iterations were measured to be as many; at 1e-12 more
 
@@ -134,7 +134,7 @@ class Level:
         """Root mean square of the patches' pressure less that of the shape [Pa], where they meet inside."""
         if self.edge is None:
             return 0.0
-        edge, inner = self.edge, self.edge.share < 1
+        edge, inner = self.edge, self.edge.inner
         rest = (self.found.pressure[edge.i, edge.j] - edge.centre)[inner]
         return float(np.sqrt(np.mean(rest**2))) if rest.size else 0.0
 
@@ -161,7 +161,7 @@ class Level:
         x, p, edge = self.grid.x, self.found.pressure, self.edge
         rest = p - self.shape.pressure(x[:, None], x[None, :])
         # a shape fitted near the edge alone fades where patches and parts may still share a patch
-        rest[edge.i, edge.j] += edge.share * (edge.centre - p[edge.i, edge.j])
+        rest[edge.i, edge.j] += edge.centre - p[edge.i, edge.j]
         rest[self.found.pressure <= 0] = 0.0
         return rest if np.abs(rest).max() > RIPPLE * self.found.pressure.max() else None
 
@@ -279,7 +279,7 @@ def _above_highest(p: Array) -> float:
     curvature, axes = np.linalg.eigh(
         [[2 * q[1, 1] - q[0, 1] - q[2, 1], cross], [cross, 2 * q[1, 1] - q[1, 0] - q[1, 2]]]
     )
-    curved = curvature > 1e-9 * curvature[1]  # not along a ridge
+    curved = curvature > 0.02 * curvature[1]  # not along a ridge, such as a ring of highest pressure
     return float(np.sum((slope @ axes)[curved] ** 2 / (2 * curvature[curved])))
 
 

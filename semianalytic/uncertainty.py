@@ -20,7 +20,7 @@ OUTSIDE = 3.0  # times as much where the shape is fitted near the edge alone
 UNRESOLVED = 0.03  # patches by which the edge of a film thinner than two of them may be wrong
 # over the accuracy asked, of the change of the pressure at the same x/a; the part that is left of the change
 # before: it was seen to fall 2.4 to 3.4 times from one grid to the next
-PRESSURE, EARLIER = 6.0, 1 / 3
+PRESSURE, EARLIER = 4.0, 1 / 3
 PATCHES = 1 / 2  # of the change before, of patches alone, whose edge changes erratically
 
 
