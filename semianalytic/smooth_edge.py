@@ -25,7 +25,7 @@ __all__ = ["NEAR", "PARTS", "EdgePatches", "beyond_centres", "edge_patches", "ne
 Array = NDArray[np.floating]
 Indices = NDArray[np.intp]
 
-FULL = 2  # depth in contact to which patches are integrated by parts: 1 beside an unloaded patch
+FULL = 3  # depth in contact to which patches are integrated by parts: 1 beside an unloaded patch
 PARTS = 15  # of a patch a side, odd
 AT_ONCE = 2000  # patches at the edge: with their parts 100 megabytes
 NEAR = 4  # within which the deflection is that of the parts, beyond it that of their moments

@@ -17,6 +17,7 @@ __all__ = ["WIDER", "Uncertainty", "change", "is_met", "of_contact", "other_conv
 WIDER = 1.25  # the box that tests the domain over the box in use
 SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge
 OUTSIDE = 3.0  # times as much where the shape is fitted near the edge alone
+SECOND = 1e-3  # of the approach, times (d/a)^2: what patches leave of the deflection inside, 5e-4 observed
 UNRESOLVED = 0.03  # patches by which the edge of a film thinner than two of them may be wrong
 # over the accuracy asked, of the change of the pressure at the same x/a; the part that is left of the change
 # before: it was seen to fall 2.4 to 3.4 times from one grid to the next
@@ -55,16 +56,20 @@ class Uncertainty:
         factor: float,
         share: float,
         edge: float = 0.0,
+        inside: float = 0.0,
     ) -> "Uncertainty":
         """From the results on three grids, and the changes by one other parameter that is less accurate.
 
         Patch size: ``factor`` times the change to the finest grid, or ``share`` of the change before where
         the last is small by chance, or ``edge``, the error of the contact radius by patches that the edge
-        cuts [m].
+        cuts [m], or ``inside``, that of the deflection there, relative.
         """
         # an error of the edge is of the second order in the approach, which is stationary in the contact's
         # area
-        least = {"contact_radius": edge, "approach": fine["approach"] * (edge / fine["contact_radius"]) ** 2}
+        least = {
+            "contact_radius": edge,
+            "approach": fine["approach"] * (inside + (edge / fine["contact_radius"]) ** 2),
+        }
         rows = []
         for name, value in fine.items():
             last, before = abs(value - middle[name]), abs(middle[name] - coarse[name])
@@ -104,7 +109,10 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
         edge = max(edge, UNRESOLVED * last.grid.d)
     smooth = np.multiply(SMOOTH, OUTSIDE if last.shape and last.shape.outside else 1.0)
     factor, share = smooth if last.shape else (safety(last.grid.n / levels[-2].grid.n), PATCHES)
-    return Uncertainty.from_levels(fine, middle, coarse, variations, factor=factor, share=share, edge=edge)
+    inside = SECOND * (last.grid.d / min(last.shape.axes)) ** 2 if last.shape else 0.0
+    return Uncertainty.from_levels(
+        fine, middle, coarse, variations, factor=factor, share=share, edge=edge, inside=inside
+    )
 
 
 def is_met(accuracy: float, estimate: Uncertainty, levels: list[Level]) -> bool:
