@@ -20,8 +20,8 @@ OUTSIDE = 3.0  # times as much where the shape is fitted near the edge alone
 SECOND = 1e-3  # of the approach, times (d/a)^2: what patches leave of the deflection inside, 5e-4 observed
 UNRESOLVED = 0.03  # patches by which the edge of a film thinner than two of them may be wrong
 # over the accuracy asked, of the change of the pressure at the same x/a; the part that is left of the change
-# before: it was seen to fall 2.4 to 3.4 times from one grid to the next
-PRESSURE, EARLIER = 4.0, 1 / 3
+# before: it was seen to fall 2.4 to 10 times from one grid to the next
+PRESSURE, EARLIER = 4.0, 1 / 5
 PATCHES = 1 / 2  # of the change before, of patches alone, whose edge changes erratically
 
 
