@@ -36,7 +36,7 @@ OUTER_TERMS = 6  # polynomials of a pressure that is fitted near the edge alone
 NARROW = 5  # patches between centre and edge, below which the edge is not resolved
 # polynomials: of an uncoated body; of a layer, the second number for each of asinh(1/e)
 FEW, LAYERED = 3, (6.0, 4.6)
-USUAL = 115  # patches in a of the default grid; a grid 1.4 times as fine has one polynomial more
+USUAL = 115  # patches in a of the default grid; beyond, a grid 1.4 times as fine has one polynomial more
 LAYER = 7.0  # e over h/a: 4 is best for one coating, 8 for a stack, whose images lie farther away too
 RESOLVED = 1.75  # polynomials for each sqrt(patches in a times e asinh(1/e)); under stacks 2 did not converge
 THICK = 100.0  # e of a layer so thick that it does not matter
@@ -116,8 +116,6 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
     either = problem.indenter.round or shape.outside
     if not either and _missed_inside(shape, edge, p, x, y) > INNER * p.max():
         return None
-    if not shape.outside:  # the fit leaves 1e-7 of the load, which fields far away would feel
-        shape = replace(shape, coefficients=shape.coefficients * (level.load / shape.load))
     return replace(level, shape=shape, edge=edge, convolutions=convolutions)
 
 
@@ -166,7 +164,11 @@ def _terms(shape: Shape, d: float) -> int:
     """
     patches, e = min(shape.axes) / d, shape.layer
     length = 0.0 if np.isinf(e) else float(np.arcsinh(1 / e))
-    wanted = FEW if np.isinf(e) else LAYERED[0] + LAYERED[1] * length + np.log(patches / USUAL) / np.log(1.4)
+    wanted = (
+        FEW
+        if np.isinf(e)
+        else LAYERED[0] + LAYERED[1] * length + max(0.0, np.log(patches / USUAL) / np.log(1.4))
+    )
     rate = 1.0 if np.isinf(e) else e * length
     return int(max(FEW, min(wanted, patches / 4, RESOLVED * np.sqrt(rate * patches))))
 

@@ -77,17 +77,6 @@ class Shape:
             area *= float(np.mean(self.reach(2 * np.pi * np.arange(ANGLES) / ANGLES) ** 2))
         return float(np.sqrt(area))
 
-    @property
-    def load(self) -> float:
-        """Integral of f [N]: v^2 = 1 - (s/reach)^2 along rays, since f is nearly linear in v at the edge."""
-        nodes, weights = np.polynomial.legendre.leggauss(96)
-        v = (1 + nodes) / 2
-        angle = 2 * np.pi * np.arange(1 if self.round else 64)[:, None] / 64
-        reach = self.reach(angle)
-        u = reach * np.sqrt(1 - v * v) * np.exp(1j * angle)
-        f = self.pressure(self.centre[0] + self.axes[0] * u.real, self.centre[1] + self.axes[1] * u.imag)
-        return float(np.pi * self.axes[0] * self.axes[1] * np.mean(reach**2 * f @ (weights * v)[:, None]))
-
     def reach(self, angle: Array) -> Array:
         """s of the edge in the direction ``angle`` of u + iv: t along a ray is nearly 1 - (s/reach)^2."""
         reach: Array = np.ones(np.shape(angle))

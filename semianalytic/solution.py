@@ -29,11 +29,12 @@ Array = NDArray[np.floating]
 EVALUATION = (5e-6, 5e-7)
 RINGS = 2e-8  # likewise on rings
 NEAR = 8.0  # patches from the edge, within which the error of its radius is felt
-# of fields under a smooth edge: times the last change, more next to the edge, or the change before
-INSIDE, AT_EDGE, BEFORE = 2.5, 5.0, 0.4
+# of fields under a smooth edge, inside and next to the edge: times the last change, times the change before
+INSIDE, AT_EDGE = (2.5, 0.4), (5.0, 1.0)
 # what the refinement of a smooth edge does not show: of the root mean square of the change of the pressure,
 # and of the peak pressure; felt to a depth of some patches
 FLOOR, REACH = (0.35, 6e-7), 8.0
+DEFLECTED = 0.2  # of that floor over the peak pressure, that the displacement over the approach feels
 # deep down a stress follows the moments of the pressure, the second one a^2 at a given load: share of the
 # relative uncertainty of a, 5 times its error in the median; in full below as many patches
 DEEP = 0.1, 32.0
@@ -234,7 +235,8 @@ class Solution:
         last, before = (np.abs(one - other).max(axis=0) for one, other in ((u, second), (second, third)))
         total = self._change(last, before, x, y) + RINGS * self.approach
         if self._level.shape is not None:
-            total = total + self.uncertainty.approach
+            floor = DEFLECTED * self._floor / self.peak_pressure
+            total = total + self.uncertainty.approach + floor * self.approach
         return u, np.broadcast_to(total, u.shape).copy()
 
     def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat") -> Array:
@@ -323,7 +325,7 @@ class Solution:
 
         The largest difference over the six components, for every component alike, of this level and the next,
         or of the next and the one after, at the same x/a of each. Under a smooth edge times ``INSIDE`` to
-        ``AT_EDGE``, or ``BEFORE``, plus ``FLOOR`` of the peak; or the change by the uncertain radius
+        ``AT_EDGE``, plus ``FLOOR`` of the peak; or the change by the uncertain radius
         near the edge, where that is larger, unless the solution is ``relative_to_edge``. Of patches alone
         times ``safety``, or a third, plus the error of the evaluation, ``EVALUATION`` of the peak. Both with
         the changes of the peak pressure by the other numerical parameters.
@@ -366,7 +368,10 @@ class Solution:
         if self._level.shape is not None:
             near = self._to_edge(x, y) / (2 * self.diagnostics.patch_size)
             share = 1 / (1 + near * near)
-        change: Array = np.maximum((INSIDE + (AT_EDGE - INSIDE) * share) * last, BEFORE * before)
+        of_last, of_before = (
+            inside + (edge - inside) * share for inside, edge in zip(INSIDE, AT_EDGE, strict=True)
+        )
+        change: Array = np.maximum(of_last * last, of_before * before)
         return change
 
     def _near_ripple(self, x: ArrayLike, y: ArrayLike) -> Array:

@@ -82,7 +82,7 @@ def solve(
     patches alone, whose edge is a staircase.
     accuracy : relative uncertainty of contact radius, approach and peak pressure, for which the patches are
     refined beyond ``patches`` to at most 1025 a side, and until the pressure at the same x/a changes by no
-    more than six times that of its peak; the solution states what it reached. None : no refinement.
+    more than four times as much of its peak; the solution states what it reached. None : no refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
     indenter : another shape than a sphere, (name, numbers [m]) as in ``indenter_profile``, pressed as by
     ``indent`` over a square that is found; without ``accuracy``.
