@@ -124,20 +124,14 @@ def meridian_mesh(
 
     stacks : thicknesses of the coatings of all solids in contact, this one alone unless given. The vertices
     of the surface depend on the contact radius, ``far``, ``grading`` and them alone.
-    One physical group per layer ("coating 1", ..., "substrate"). Raises ValueError when the contact or the
-    coatings do not fit into the half-space.
+    Raises ValueError when the contact or the coatings do not fit into the half-space.
     """
     a = contact_radius
     depths = np.cumsum(np.asarray(thicknesses, dtype=float))
     if depths.size and not depths[-1] < 0.5 * far:
-        raise ValueError(
-            f"coatings reach {depths[-1]:g} deep in a half-space cut off at {far:g}; choose a larger "
-            "far boundary"
-        )
+        raise ValueError(f"coatings reach {depths[-1]:g} deep; choose a far boundary beyond {far:g}")
     if not a < 0.1 * far:
-        raise ValueError(
-            f"contact radius {a:g} in a half-space cut off at {far:g}; choose a larger far boundary"
-        )
+        raise ValueError(f"contact radius {a:g}; choose a far boundary farther out than {far:g}")
     stacks = stacks or (thicknesses,)
     length = float(np.sqrt(a * min([a, *(h for stack in stacks for h in stack[:1])])))
     xi = np.array([-np.arcsinh(a / length), 0.0, np.arcsinh((far - a) / length)])
@@ -175,8 +169,8 @@ def _triangulate(
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Mesh the stretched plane.
 
-    films : upper and lower zeta of the coatings of all bodies.   scale : a / l, converts ``edge_size`` to
-    units of l.
+    films : upper and lower zeta of the coatings of all bodies.   scale : a / l, converts to units of l
+    Returns the nodes (2, n), the triangles (3, m) and their layers (m,).
     """
     with session("coated half-space") as gmsh:
         geo = gmsh.model.geo
@@ -193,10 +187,6 @@ def _triangulate(
             loop = geo.addCurveLoop([*across[k], down_far[k], *bottom, -down_axis[k]])
             layers.append(geo.addPlaneSurface([loop]))
         geo.synchronize()
-        for k, surface in enumerate(layers):
-            name = "substrate" if k == len(layers) - 1 else f"coating {k + 1}"
-            gmsh.model.addPhysicalGroup(2, [surface], k + 1, name)
-        gmsh.model.addPhysicalGroup(1, [across[0][0]], 1, "contact")
 
         rho = "Sqrt(x*x+y*y)"
         bare = np.arcsinh(_NEAR * scale)
@@ -222,8 +212,7 @@ def _triangulate(
         for number, size in zip(numbers, sizes, strict=True):
             field.add("MathEval", number)
             field.setString(number, "F", size)
-        smallest = len(sizes) + 1
-        field.add("Min", smallest)
+        smallest = field.add("Min")
         field.setNumbers(smallest, "FieldsList", list(numbers))
         field.setAsBackgroundMesh(smallest)
         gmsh.model.mesh.generate(2)
@@ -231,19 +220,14 @@ def _triangulate(
         tags, coordinates, _ = gmsh.model.mesh.getNodes()
         order = np.full(int(tags.max()) + 1, -1)
         order[tags.astype(int)] = np.arange(tags.size)
-        triangles, layer = [], []
-        for k in range(len(layers)):
-            for surface in gmsh.model.getEntitiesForPhysicalGroup(2, k + 1):
-                _, members = gmsh.model.mesh.getElementsByType(2, int(surface))
-                corners = order[members.astype(int)].reshape(-1, 3).T
-                triangles.append(corners)
-                layer.append(np.full(corners.shape[1], k))
+        members = [gmsh.model.mesh.getElementsByType(2, surface)[1].astype(int) for surface in layers]
     nodes = coordinates.reshape(-1, 3).T[:2]
-    corners = np.concatenate(triangles, axis=1)
+    corners = order[np.concatenate(members)].reshape(-1, 3).T
+    layer = np.repeat(np.arange(len(layers)), [corner.size // 3 for corner in members])
     # gmsh returns the surfaces as oriented by their loop; make every triangle counter-clockwise
     flip = _twice_area(nodes, corners) < 0
     corners[1:, flip] = corners[:0:-1, flip]
-    return nodes, np.ascontiguousarray(corners), np.concatenate(layer)
+    return nodes, np.ascontiguousarray(corners), layer
 
 
 def _literal(value: float) -> str:
