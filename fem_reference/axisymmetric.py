@@ -34,7 +34,7 @@ from skfem import (
     asm,
 )
 
-from .location import Locator
+from .location import Locator, Uncached
 from .mesh import MeridianMesh
 
 __all__ = ["ELEMENTS", "Discretisation", "Skeleton", "elasticity", "strain_operator"]
@@ -73,7 +73,7 @@ def elasticity(E: float, nu: float, harmonic: float) -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False)
-class Discretisation:
+class Discretisation(Uncached):
     """Lagrange elements of one ``order`` on a meridian mesh, and everything assembled from them.
 
     A field vector stacks the fields one after the other: entry ``field * N + i`` is the value of that field
@@ -82,10 +82,6 @@ class Discretisation:
 
     mesh: MeridianMesh
     order: int
-
-    def __getstate__(self) -> dict[str, object]:
-        # pickled without the cached properties, which are computed again on use: a hundred times smaller
-        return {"mesh": self.mesh, "order": self.order}
 
     @cached_property
     def triangulation(self) -> MeshTri:
@@ -112,13 +108,9 @@ class Discretisation:
         """Positions (r, z) of the unknowns, shape (2, N)."""
         return np.asarray(self.basis.doflocs)
 
-    def facets(self, where: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-        """Boundary edges whose midpoint satisfies ``where``."""
-        return np.asarray(self.triangulation.facets_satisfying(where, boundaries_only=True))
-
-    def unknowns_on(self, facets: np.ndarray) -> np.ndarray:
-        """Numbers of the unknowns (of one field) on the edges ``facets``."""
-        return np.asarray(self.basis.get_dofs(facets).all())
+    def unknowns_on(self, where: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        """Numbers of the unknowns (of one field) on the boundary edges whose midpoint satisfies ``where``."""
+        return np.asarray(self.basis.get_dofs(where).all())
 
     @cached_property
     def contact_vertices(self) -> np.ndarray:
@@ -129,7 +121,7 @@ class Discretisation:
     @cached_property
     def surface(self) -> np.ndarray:
         """Unknowns of one field on z = 0, by increasing radius."""
-        numbers = self.unknowns_on(self.facets(lambda x: x[1] == 0))
+        numbers = self.unknowns_on(lambda x: x[1] == 0)
         return numbers[np.argsort(self.locations[0, numbers])]
 
     @cached_property
@@ -139,12 +131,12 @@ class Discretisation:
 
     @cached_property
     def axis(self) -> np.ndarray:
-        return self.unknowns_on(self.facets(lambda x: x[0] == 0))
+        return self.unknowns_on(lambda x: x[0] == 0)
 
     @cached_property
     def outer(self) -> np.ndarray:
         far = self.locations.max(axis=1)[:, None] * (1 - 1e-9)
-        return self.unknowns_on(self.facets(lambda x: np.any(x >= far, axis=0)))
+        return self.unknowns_on(lambda x: np.any(x >= far, axis=0))
 
     def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: float) -> sp.csc_matrix:
         """Stiffness matrix, (n, n) for field vectors (n,): virtual work over the angular factor of all terms.
@@ -214,21 +206,22 @@ class Discretisation:
         size = fields * basis.Nbfun
         return K.reshape(-1, size, size), numbers.reshape(-1, size)
 
-    def surface_basis(self, facets: np.ndarray) -> FacetBasis:
-        """Shape functions on surface edges, with quadrature exact for products of two and r."""
+    def contact_basis(self) -> FacetBasis:
+        """Shape functions on the contact, with quadrature exact for products of two and r."""
+        mesh, a = self.triangulation, self.mesh.contact_radius
+        edges = mesh.facets_satisfying(lambda x: (x[1] == 0) & (x[0] < a), boundaries_only=True)
         return FacetBasis(
-            self.triangulation, ELEMENTS[self.order](), facets=facets, intorder=2 * self.order + 1
+            self.triangulation, ELEMENTS[self.order](), facets=edges, intorder=2 * self.order + 1
         )
 
-    def surface_mass(self, facets: np.ndarray) -> sp.csr_matrix:
-        """Mass matrix of the surface edges ``facets``, int phi_i phi_j r dr; shape (N, N)."""
-        return asm(_mass, self.surface_basis(facets)).tocsr()
+    def contact_mass(self) -> sp.csr_matrix:
+        """Mass matrix of the contact, int phi_i phi_j r dr; shape (N, N)."""
+        return asm(_mass, self.contact_basis()).tocsr()
 
-    def surface_load(self, facets: np.ndarray, traction: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-        """Load vector of one field, int traction(r) v r dr over the surface edges ``facets``; shape (N,)."""
-        return np.asarray(
-            asm(LinearForm(lambda v, w: traction(w.x[0]) * v * w.x[0]), self.surface_basis(facets))
-        )
+    def contact_load(self, traction: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
+        """Load vector of one field, int traction(r) v r dr over the contact; shape (N,)."""
+        form = LinearForm(lambda v, w: traction(w.x[0]) * v * w.x[0])
+        return np.asarray(asm(form, self.contact_basis()))
 
 
 @BilinearForm

@@ -3,15 +3,15 @@
 By hand: scikit-fem compares no fields on two unrelated meshes.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from .axisymmetric import Discretisation
-from .location import LocatedPoints
+from .location import LocatedPoints, Uncached
 
-__all__ = ["REACH", "ComparisonPoints", "Pair", "Uncached", "largest_around", "samples"]
+__all__ = ["REACH", "ComparisonPoints", "Pair", "largest_around", "samples"]
 
 # Shares of the largest difference in rings of triangles, or cells of a line, by their distance from a point.
 REACH = (1.0, 1.0, 0.5)
@@ -23,14 +23,6 @@ _INWARDS = 1e-7
 _CELL_SAMPLES = 7
 
 Pair = tuple[LocatedPoints, LocatedPoints]  # on the final mesh, on that of the companion
-
-
-@dataclass(frozen=True, eq=False)
-class Uncached:
-    """A dataclass that is pickled without its cached properties."""
-
-    def __getstate__(self) -> dict[str, object]:
-        return {f.name: getattr(self, f.name) for f in fields(self)}
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,11 +55,9 @@ class ComparisonPoints(Uncached):
         """Vertices and points between them on the surface and both sides of interfaces, by (depth, layer)."""
         mesh = self.final.mesh
         reach = 0.9 * self.companion.mesh.far
-        sides = [(0.0, 0)]
-        for upper, depth in enumerate(mesh.depths):
-            sides += [(float(depth), upper), (float(depth), upper + 1)]
+        interfaces = [(float(depth), layer) for k, depth in enumerate(mesh.depths) for layer in (k, k + 1)]
         planes = {}
-        for depth, layer in sides:
+        for depth, layer in [(0.0, 0), *interfaces]:
             vertices = np.sort(mesh.points[0, mesh.points[1] == depth])
             vertices = vertices[vertices < reach]
             r = samples(vertices)

@@ -176,7 +176,6 @@ def solve_at_radius(
     """
     d, contact = discretisation, discretisation.contact
     a = d.mesh.contact_radius
-    edges = d.facets(lambda x: (x[1] == 0) & (x[0] < a))
     nodes = d.locations[0, contact]
     # flat punch, paraboloid, far field
     shape = np.stack([np.ones_like(nodes), -undeformed_gap(nodes, curvature), np.zeros_like(nodes)], axis=1)
@@ -186,7 +185,7 @@ def solve_at_radius(
     else:
         u, of_ball, reaction, solved = ball[1].solve((solid, ball[0]), shape, far)
 
-    mass = d.surface_mass(edges)[contact][:, contact]
+    mass = d.contact_mass()[contact][:, contact]
     even = _even_at_the_axis(nodes, d.order)
     p = even @ sla.splu((even.T @ mass @ even).tocsc()).solve(even.T @ reaction)
     loads = 2 * np.pi * reaction.sum(axis=0)
@@ -239,8 +238,7 @@ def _under_rigid(
     N = d.N
     given = np.zeros((2 * N, far.size))
     given[N + d.contact] = shape
-    u_r, u_z = solid.far_displacement(*d.locations[:, d.outer])
-    given[d.outer], given[N + d.outer] = u_r[:, None] * far, u_z[:, None] * far
+    given[d.outer], given[N + d.outer] = solid.far_fields(0, far, d.locations[:, d.outer])
     given[d.axis] = 0.0
     K = d.skeleton(solid.materials, 0)
     fixed = np.concatenate([d.axis, d.outer, N + d.outer, N + d.contact, K.inner.ravel()])

@@ -68,9 +68,8 @@ class Coupling:
         fixed = [K_flat.inner.ravel(), numbers[K_ball.inner.ravel()]]
         sides = ((flat, np.arange(n_flat), 1.0), (ball, numbers, -1.0))
         for (d, number, axial), solid in zip(sides, solids, strict=True):
-            u_r, u_z = solid.far_displacement(*d.locations[:, d.outer])
-            given[number[d.outer]] = u_r[:, None] * far
-            given[number[d.N + d.outer]] = axial * u_z[:, None] * far
+            u_r, u_z = solid.far_fields(0, far, d.locations[:, d.outer])
+            given[number[d.outer]], given[number[d.N + d.outer]] = u_r, axial * u_z
             given[number[d.axis]] = 0.0
             fixed += [number[d.outer], number[d.N + d.outer], number[d.axis]]
         apart = np.zeros((n_ball, far.size))

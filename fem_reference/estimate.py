@@ -32,10 +32,10 @@ from functools import cached_property
 
 import numpy as np
 
-from .companion_points import REACH, ComparisonPoints, Pair, Uncached, largest_around, samples
+from .companion_points import REACH, ComparisonPoints, Pair, largest_around, samples
 from .contact import FixedRadiusContact, peak
 from .levels import COMPANION, ContactLevels
-from .location import LocatedPoints
+from .location import LocatedPoints, Uncached
 from .recovery import HarmonicField
 from .scaling import Units
 from .state import ElasticState

@@ -176,13 +176,12 @@ def _fields(solid: LayeredSolid, d: Discretisation, m: float, loads: np.ndarray)
     outside: list[tuple[np.ndarray, np.ndarray]] = []
     if m == 0:
         W = loads[0].sum(axis=0)
-        outside = [(u, W) for u in solid.far_displacement(*far)]
+        outside = [(u, W) for u in solid.far_fields(0, 1.0, far)]
     else:  # virtual work R U + T V with U = S - V
         load[d.N + d.contact] = angular - radial
     if m == 1:
         Q = (loads[1] - loads[2]).sum(axis=0)
-        U, V, Z = solid.far_sliding(*far)
-        outside = [(u, Q) for u in (U + V, V, Z)]
+        outside = [(u, Q) for u in solid.far_fields(1, 1.0, far)]
     for field, (u, resultant) in enumerate(outside):
         given[field * d.N + d.outer] = u[:, None] * resultant
     for field in axis:

@@ -6,9 +6,7 @@ contact radius of every level.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
 
 from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact, solve_at_radius
@@ -23,7 +21,7 @@ __all__ = [
     "companion_grading",
     "final_grading",
     "find_contact_radius",
-    "mesh_at",
+    "meshes_at",
     "solve_levels",
 ]
 
@@ -53,9 +51,7 @@ class ContactLevels:
     history: tuple[tuple[str, float, float], ...]
 
 
-Solids = tuple[LayeredSolid, ...]
-# of the flat, then of an elastic ball, with the same vertices on the surface
-Meshes = tuple[MeridianMesh, ...]
+Solids = tuple[LayeredSolid, ...]  # the flat, then an elastic ball
 
 
 def solve_levels(
@@ -71,7 +67,6 @@ def solve_levels(
 ) -> ContactLevels:
     """Find the contact radius at ``load``, each level starting from the result of the one before.
 
-    solids : the flat, then an elastic ball
     order, size, tolerance : of the final level.  max_iterations : contact solves allowed on each level
     curvature : of the gap, as in `contact.undeformed_gap`
     Raises NotConverged when the load is not reached on one of the levels.
@@ -85,12 +80,7 @@ def solve_levels(
     found: dict[str, FixedRadiusContact] = {}
     for name, grading, allowed in levels:
         contact, solves = find_contact_radius(
-            load,
-            start=a,
-            tolerance=allowed,
-            max_iterations=max_iterations,
-            meshes_at=partial(_meshes_at, solids, grading),
-            solve_on=partial(_solve_on, solids, order, curvature),
+            solids, load, grading, a, order, curvature, max_iterations, allowed
         )
         history += [(name, *solve) for solve in solves]
         a, W = solves[-1]
@@ -106,37 +96,39 @@ def solve_levels(
 
 
 def find_contact_radius(
+    solids: Solids,
     load: float,
-    *,
-    start: float,
-    tolerance: float,
+    grading: Grading,
+    a: float,
+    order: int,
+    curvature: float,
     max_iterations: int,
-    meshes_at: Callable[[float], Meshes],
-    solve_on: Callable[[Meshes], FixedRadiusContact],
+    tolerance: float,
 ) -> tuple[FixedRadiusContact, list[tuple[float, float]]]:
-    """Find a with |log W(a)/load| <= ``tolerance`` from ``start``.
+    """Find the contact radius with |log W/load| <= ``tolerance`` from ``a``, on meshes of one ``grading``.
 
     The load of a rigid paraboloid rises with the contact radius, W ~ a^3 on a homogeneous solid, so log W is
     nearly linear in log a and Newton's method with the slope d log W / d log a, which every solution gives to
     some thousandths (``contact``), converges in a few steps. Small steps stretch the meshes, large ones make
     new ones.
 
-    meshes_at : contact radius -> meshes with a vertex there.  solve_on : meshes -> contact with their radius
     Returns the last contact and (contact radius, load) of every solve; after ``max_iterations``, or where the
     load is not a positive number, the tolerance is not reached.
     """
-    a, meshes = start, meshes_at(start)
+    meshes = meshes_at(solids, grading, a)
     solves: list[tuple[float, float]] = []
     while True:
         factor = a / meshes[0].contact_radius
-        contact = solve_on(tuple(mesh.stretched(factor) for mesh in meshes))
+        flat, *others = (Discretisation(mesh.stretched(factor), order) for mesh in meshes)
+        ball = (solids[1], Coupling(flat, others[0])) if others else None
+        contact = solve_at_radius(solids[0], flat, ball, curvature)
         solves.append((a, contact.load))
         positive = contact.load > 0 and math.isfinite(contact.load)
         if not positive or _balanced(contact.load, load, tolerance) or len(solves) >= max_iterations:
             return contact, solves
         a = contact.radius_at(load)
         if not 1 / _STRETCH < a / meshes[0].contact_radius < _STRETCH:
-            meshes = meshes_at(a)
+            meshes = meshes_at(solids, grading, a)
 
 
 def _balanced(W: float, load: float, tolerance: float) -> bool:
@@ -157,12 +149,7 @@ def companion_grading(size: float) -> Grading:
     return Grading.of(COMPANION * size, edge_size=4 * EDGE_SIZE, rows=rows).limited(1.0)
 
 
-def mesh_at(solid: LayeredSolid, grading: Grading, contact_radius: float) -> MeridianMesh:
-    """Mesh of the ``solid`` with a vertex at the contact radius."""
-    return _meshes_at((solid,), grading, contact_radius)[0]
-
-
-def _meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> Meshes:
+def meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> tuple[MeridianMesh, ...]:
     """Mesh of each of the ``solids``, alike on the surface; layers of equal thicknesses share one.
 
     The contact radius is rounded to five digits, so that the rounding of a search does not decide on the
@@ -180,9 +167,3 @@ def _meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> Meshe
         for thicknesses in dict.fromkeys(stacks)
     }
     return tuple(made[solid.thicknesses] for solid in solids)
-
-
-def _solve_on(solids: Solids, order: int, curvature: float, meshes: Meshes) -> FixedRadiusContact:
-    flat, *others = (Discretisation(mesh, order) for mesh in meshes)
-    ball = (solids[1], Coupling(flat, others[0])) if others else None
-    return solve_at_radius(solids[0], flat, ball, curvature)

@@ -22,8 +22,7 @@ Traction = Callable[[np.ndarray], np.ndarray]
 
 def resultant(discretisation: Discretisation, traction: Traction) -> float:
     """Total force 2 pi int traction(r) r dr over the surface inside the mesh's contact radius."""
-    d = discretisation
-    return float(2 * np.pi * d.surface_load(_inside(d), traction).sum())
+    return float(2 * np.pi * discretisation.contact_load(traction).sum())
 
 
 def solve_traction(
@@ -33,31 +32,18 @@ def solve_traction(
 
     traction : r -> pressure (harmonic 0) or traction in +x (harmonic 1)
     """
-    d, N = discretisation, discretisation.N
-    force = d.surface_load(_inside(d), traction)
-    far_displacement = solid.far_displacement if harmonic == 0 else solid.far_sliding
-    far = 2 * np.pi * force.sum() * far_displacement(*d.locations[:, d.outer])
-    zero = np.zeros(N)
+    d = discretisation
+    force = d.contact_load(traction)
+    zero = np.zeros(d.N)
     if harmonic == 0:
-        load = np.concatenate([zero, force])
-        fixed_fields: tuple[tuple[int, np.ndarray], ...] = ((0, far[0]), (1, far[1]))
-        on_axis: tuple[int, ...] = (0,)
+        load, on_axis = np.stack([zero, force]), [0]
     else:
-        load = np.concatenate([force, -2 * force, zero])
-        fixed_fields = ((0, far[0] + far[1]), (1, far[1]), (2, far[2]))
-        on_axis = (0, 2)
-    given = np.zeros(load.size)
-    for field, values in fixed_fields:
-        given[field * N + d.outer] = values
+        load, on_axis = np.stack([force, -2 * force, zero]), [0, 2]
+    given, fixed = np.zeros(load.shape), np.zeros(load.shape, dtype=bool)
+    given[:, d.outer] = solid.far_fields(harmonic, 2 * np.pi * force.sum(), d.locations[:, d.outer])
     for field in on_axis:
-        given[field * N + d.axis] = 0.0
+        given[field, d.axis], fixed[field, d.axis] = 0.0, True
+    fixed[:, d.outer] = True
     K = d.skeleton(solid.materials, harmonic)
-    fixed = [field * N + d.outer for field, _ in fixed_fields] + [field * N + d.axis for field in on_axis]
-    fixed.append(K.inner.ravel())
-    solved = constrained_solve(K.matrix, given, np.concatenate(fixed), load)
-    return K.extended(solved.u)
-
-
-def _inside(d: Discretisation) -> np.ndarray:
-    a = d.mesh.contact_radius
-    return d.facets(lambda x: (x[1] == 0) & (x[0] < a))
+    fixed.reshape(-1)[K.inner] = True
+    return K.extended(constrained_solve(K.matrix, given.ravel(), np.flatnonzero(fixed), load.ravel()).u)

@@ -56,13 +56,16 @@ class LayeredSolid:
         materials = (*zip(moduli, poisson, strict=True), (E / modulus, nu))
         return cls(materials, thicknesses, far * (1 + extent))
 
-    def far_displacement(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """(u_r, u_z) far from a unit normal force: that of the substrate alone."""
-        return boussinesq(r, z, *self.materials[-1])
+    def far_fields(self, harmonic: int, load: float | np.ndarray, at: np.ndarray) -> np.ndarray:
+        """Fields (see ``axisymmetric``) at points (2, n) far from a ``load``: those of the substrate alone.
 
-    def far_sliding(self, r: np.ndarray, z: np.ndarray) -> np.ndarray:
-        """Amplitudes (u_r, u_theta, u_z) far from a unit tangential force."""
-        return cerruti(r, z, *self.materials[-1])
+        load : number or (columns,), normal for harmonic 0, tangential for 1.  Returns (fields, n, columns).
+        """
+        r, z = at
+        if harmonic == 0:
+            return np.multiply.outer(boussinesq(r, z, *self.materials[-1]), load)
+        U, V, Z = np.multiply.outer(cerruti(r, z, *self.materials[-1]), load)
+        return np.stack([U + V, V, Z])
 
 
 def first_radius(solids: tuple[LayeredSolid, ...], load: float) -> float:

@@ -16,7 +16,7 @@ from .validation import check_friction
 __all__ = ["BodyFields", "Diagnostics", "Solution", "cartesian", "tensor"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Diagnostics:
     """How the solution was reached.
 
@@ -25,19 +25,19 @@ class Diagnostics:
     residual_gap : largest |gap| at the contact's nodes over the approach
     residual_pressure : most negative gap outside, or pressure inside, over approach or peak; 0 when none
     residual_load : relative error of the load
-    residual_equilibrium : largest nodal out-of-balance force over the load
+    residual_equilibrium : largest nodal out-of-balance force over the load; none under a prescribed pressure
     seconds : wall time
     history : (level, contact radius [m], load [N]) of every contact solve
     """
 
-    iterations: int
+    iterations: int = 1
     dofs: int
     triangles: int
     order: int
-    residual_gap: float
-    residual_pressure: float
-    residual_load: float
-    residual_equilibrium: float
+    residual_gap: float = 0.0
+    residual_pressure: float = 0.0
+    residual_load: float = 0.0
+    residual_equilibrium: float = 0.0
     seconds: float
     history: tuple[tuple[str, float, float], ...]
 

@@ -14,9 +14,9 @@ import numpy as np
 from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact, complementarity, peak
 from .estimate import Estimates, contact_estimates, estimates
-from .levels import NotConverged, companion_grading, final_grading, mesh_at, solve_levels
+from .levels import NotConverged, companion_grading, final_grading, meshes_at, solve_levels
 from .loading import resultant
-from .mesh import MeridianMesh
+from .mesh import Grading
 from .scaling import LayeredSolid, Units
 from .solution import BodyFields, Diagnostics, Solution
 from .state import ElasticState
@@ -180,12 +180,13 @@ def solve_prescribed(
     solid = LayeredSolid.scaled(coatings, substrate, load_radius, far, substrate[0])
     check_proportions(solid.thicknesses, "load_radius")
 
-    def state_on(mesh: MeridianMesh) -> ElasticState:
+    def state_on(grading: Grading) -> ElasticState:
+        (mesh,) = meshes_at((solid,), grading, 1.0)
         return ElasticState.under_pressure(solid, Discretisation(mesh, order), p)
 
-    state, found = state_on(mesh_at(solid, final_grading(size), 1.0)), None
+    state, found = state_on(final_grading(size)), None
     if estimate_uncertainty:
-        companion = state_on(mesh_at(solid, companion_grading(size), 1.0))
+        companion = state_on(companion_grading(size))
         change = abs(state.central_displacement - companion.central_displacement)
         found = estimates(state, companion, unit, (0.0, change), load_residual=0.0, edge=0.0, size=size)
     d = state.discretisation
@@ -197,14 +198,9 @@ def solve_prescribed(
         surface_nodes=nodes * unit.length,
         uncertainty=None if found is None else found.scalars,
         diagnostics=Diagnostics(
-            iterations=1,
             dofs=2 * d.N,
             triangles=int(d.mesh.layer.size),
             order=order,
-            residual_gap=0.0,
-            residual_pressure=0.0,
-            residual_load=0.0,
-            residual_equilibrium=0.0,
             seconds=time.perf_counter() - started,
             history=(("final", load_radius, resultant(d, p) * unit.load),),
         ),

@@ -75,11 +75,7 @@ class ElasticState:
         distance = d.locations.max(axis=0) / self.mesh.far
         halfway = np.flatnonzero((distance > 0.35) & (distance < 0.55))
         load = -field.factor * resultant(d, self.pressure)
-        if harmonic == 0:
-            far = load * self.solid.far_displacement(*d.locations[:, halfway])
-        else:
-            U, V, Z = load * self.solid.far_sliding(*d.locations[:, halfway])
-            far = np.stack([U + V, V, Z])
+        far = self.solid.far_fields(harmonic, load, d.locations[:, halfway])
         missing = float(np.abs(field.fields.reshape(-1, d.N)[:, halfway] - far).max()) / 3
         stiffest = max(E / (1 - 2 * nu) for E, nu in self.solid.materials)
         return missing, stiffest * missing / self.mesh.far, 2 * missing / self.mesh.far**2

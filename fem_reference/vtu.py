@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from skfem import MeshTri
 
 if TYPE_CHECKING:
     from .solution import Solution
@@ -33,44 +34,42 @@ class PlaneMesh:
     stress: np.ndarray
 
     @property
-    def von_mises(self) -> np.ndarray:
-        """Von Mises stress [Pa], (n,): sqrt(3/2 s:s) of the deviator s."""
-        deviator = self.stress - np.eye(3)[:, :, None] * np.einsum("iin->n", self.stress) / 3
-        return np.sqrt(1.5 * np.einsum("ijn,ijn->n", deviator, deviator))
-
-    @property
     def point_data(self) -> dict[str, np.ndarray]:
-        """Every field at the points by its name with its unit."""
+        """Every field at the points by its name with its unit; von Mises: sqrt(3/2 s:s) of the deviator s."""
+        deviator = self.stress - np.eye(3)[:, :, None] * np.einsum("iin->n", self.stress) / 3
         return {
             "displacement [m]": self.displacement,
             **{f"sigma_{name} [Pa]": self.stress[ij] for name, ij in STRESSES.items()},
-            "von_mises [Pa]": self.von_mises,
+            "von_mises [Pa]": np.sqrt(1.5 * np.einsum("ijn,ijn->n", deviator, deviator)),
         }
 
 
 def plane_mesh(solution: "Solution") -> PlaneMesh:
     """The mesh of the plane y = 0 with its fields; with friction both halves x < 0 and x > 0."""
     mesh, length = solution.state.mesh, solution.units.length
-    points, cells, layer = _quadratic(mesh.points * length, mesh.triangles, mesh.layer)
+    layers, vertices = mesh.depths.size + 1, mesh.points.shape[1]
+    apart = mesh.triangles + mesh.layer * vertices  # no vertex is shared between layers
+    plane = MeshTri(np.tile(mesh.points * length, layers), apart, sort_t=False).remove_unused_nodes()
+    points = np.hstack([plane.p, plane.p[:, plane.facets].mean(axis=1)])
+    cells = np.vstack([plane.t, plane.nvertices + plane.t2f]).T
     owner = np.zeros(points.shape[1], dtype=int)
-    owner[cells.ravel()] = np.repeat(layer, 6)
+    owner[cells.ravel()] = np.repeat(mesh.layer, 6)
     halves = (1.0, -1.0) if solution.state.tangential is not None else (1.0,)
     x = np.concatenate([half * points[0] for half in halves])
-    z = np.tile(points[1], len(halves))
-    owner = np.tile(owner, len(halves))
+    z, owner = np.tile(points[1], len(halves)), np.tile(owner, len(halves))
     # a mirrored triangle runs clockwise: swap two corners and their middles
     mirrored = cells[:, [0, 2, 1, 5, 4, 3]]
     blocks = [cells] if len(halves) == 1 else [cells, mirrored + points.shape[1]]
     displacement = np.zeros((x.size, 3))
     sigma = np.zeros((3, 3, x.size))
-    for k in range(mesh.depths.size + 1):
+    for k in range(layers):
         mine = owner == k
         displacement[mine] = solution.displacement(x[mine], 0.0, z[mine]).T
         sigma[:, :, mine] = solution.stress(x[mine], 0.0, z[mine], layer=k)
     return PlaneMesh(
         np.stack([x, np.zeros(x.size), z], axis=1),
         np.concatenate(blocks),
-        np.tile(layer, len(halves)),
+        np.tile(mesh.layer, len(halves)),
         displacement,
         sigma,
     )
@@ -96,18 +95,3 @@ def write_vtu(solution: "Solution", path: str | PathLike[str]) -> Path:
         cell_data={"layer": [found.layer.astype(np.int32)]},
     ).write(path)
     return path
-
-
-def _quadratic(
-    points: np.ndarray, triangles: np.ndarray, layer: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Points (2, n), cells (m, 6) with edge middles, layer (m,); no node is shared between layers."""
-    count = points.shape[1]
-    a, b, c = triangles + layer * count
-    edges = np.sort(np.stack([[a, b], [b, c], [c, a]]), axis=1)
-    pairs, which = np.unique(edges.transpose(0, 2, 1).reshape(-1, 2), axis=0, return_inverse=True)
-    used, corner = np.unique(np.stack([a, b, c]), return_inverse=True)
-    middles = points[:, pairs % count].mean(axis=-1)
-    nodes = np.concatenate([points[:, used % count], middles], axis=1)
-    cells = np.concatenate([corner.reshape(3, -1), used.size + which.reshape(3, -1)])
-    return nodes, cells.T.copy(), layer
