@@ -35,7 +35,7 @@ from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation
 from .coupling import Coupling
-from .linear_system import Constrained, constrained_solve
+from .loading import solve_fields
 from .mesh import EDGE_SIZE, MeridianMesh
 from .recovery import edge_distances
 from .scaling import LayeredSolid
@@ -181,7 +181,8 @@ def solve_at_radius(
     shape = np.stack([np.ones_like(nodes), -undeformed_gap(nodes, curvature), np.zeros_like(nodes)], axis=1)
     far = np.array([0.0, 0.0, 1.0])
     if ball is None:
-        u, reaction, solved = _under_rigid(solid, d, shape, far)
+        u, solved = solve_fields(d, solid, 0, far, u_z=shape)
+        reaction = solved.force[d.N + contact]
     else:
         u, of_ball, reaction, solved = ball[1].solve((solid, ball[0]), shape, far)
 
@@ -225,25 +226,6 @@ def edge_coefficients(pressure: Multiplier, mesh: MeridianMesh, farther: float =
     values = pressure(mesh.contact_radius - EDGE_SIZE * mesh.contact_radius * distance)
     c = np.linalg.lstsq(terms, values, rcond=None)[0]
     return float(c[0] * unit**0.5), float(c[1] / unit**0.5)
-
-
-def _under_rigid(
-    solid: LayeredSolid, d: Discretisation, shape: np.ndarray, far: np.ndarray
-) -> tuple[np.ndarray, np.ndarray, Constrained]:
-    """Displacement with u_z = ``shape`` (nodes, columns) on the contact; ``far`` as in ``Coupling.solve``.
-
-    Returns the field vectors (2 N, columns), the nodal forces on the contact (nodes, columns), and how they
-    were found.
-    """
-    N = d.N
-    given = np.zeros((2 * N, far.size))
-    given[N + d.contact] = shape
-    given[d.outer], given[N + d.outer] = solid.far_fields(0, far, d.locations[:, d.outer])
-    given[d.axis] = 0.0
-    K = d.skeleton(solid.materials, 0)
-    fixed = np.concatenate([d.axis, d.outer, N + d.outer, N + d.contact, K.inner.ravel()])
-    solved = constrained_solve(K.matrix, given, fixed)
-    return K.extended(solved.u), solved.force[N + d.contact], solved
 
 
 def complementarity(contact: FixedRadiusContact) -> tuple[float, float]:

@@ -49,11 +49,6 @@ class BodyFields:
     state: ElasticState
     estimates: Estimates | None
 
-    def with_friction(self, friction: float) -> "BodyFields":
-        """The same body under the traction ``friction`` times the pressure in +x."""
-        state, estimates = self.state.with_friction(friction), self.estimates
-        return BodyFields(state, None if estimates is None else estimates.with_friction(state, friction))
-
 
 @dataclass(frozen=True, eq=False)
 class Solution:
@@ -91,11 +86,13 @@ class Solution:
         """
         started = time.perf_counter()
         check_friction(friction)
-        signed = zip(self.bodies, (friction, -friction), strict=False)  # the traction on the ball is opposite
-        bodies = tuple(body.with_friction(f) for body, f in signed)
+        bodies = []
+        # the traction on the ball is opposite
+        for body, f in zip(self.bodies, (friction, -friction), strict=False):
+            state, estimates = body.state.with_friction(f), body.estimates
+            bodies.append(BodyFields(state, estimates and estimates.with_friction(state, f)))
         seconds = self.diagnostics.seconds + time.perf_counter() - started
-        diagnostics = replace(self.diagnostics, seconds=seconds)
-        return replace(self, bodies=bodies, diagnostics=diagnostics)
+        return replace(self, bodies=tuple(bodies), diagnostics=replace(self.diagnostics, seconds=seconds))
 
     @property
     def state(self) -> ElasticState:
@@ -105,10 +102,9 @@ class Solution:
     @property
     def coarser(self) -> "Solution | None":
         """The companion by which the errors were estimated, without estimates; None where there is none."""
-        estimated = [body.estimates for body in self.bodies if body.estimates is not None]
-        if not estimated:
+        states = [body.estimates.companion for body in self.bodies if body.estimates is not None]
+        if not states:
             return None
-        states = [estimates.companion for estimates in estimated]
         _, largest = peak(states[0].pressure, states[0].discretisation.contact_vertices)
         approach = sum(state.central_displacement for state in states)
         return replace(
@@ -117,10 +113,7 @@ class Solution:
             approach=approach * self.units.displacement,
             peak_pressure=largest * self.units.pressure,
             uncertainty=None,
-            bodies=tuple(
-                replace(body, state=state, estimates=None)
-                for body, state in zip(self.bodies, states, strict=True)
-            ),
+            bodies=tuple(BodyFields(state, None) for state in states),
             stiffness=None,
             stiffness_uncertainty=None,
         )
@@ -187,7 +180,7 @@ class Solution:
         """Displacement, and its uncertainty by ``estimates``, zero without."""
         cos, sin = points.cos, points.sin
         u, error = np.zeros((2, 3, cos.size))
-        harmonics = (np.stack([np.ones_like(cos)] * 3), np.stack([cos, sin, cos]))
+        harmonics = (np.ones((3, cos.size)), np.stack([cos, sin, cos]))
         fields = (state.normal, state.tangential)
         found = (None, None) if estimates is None else (estimates.normal, estimates.tangential)
         for angle, field_, estimate in zip(harmonics, fields, found, strict=True):
