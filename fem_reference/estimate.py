@@ -33,7 +33,7 @@ from functools import cached_property
 import numpy as np
 
 from .companion_points import REACH, ComparisonPoints, Pair, largest_around, samples
-from .contact import FixedRadiusContact, peak
+from .contact import peak
 from .levels import COMPANION, ContactLevels
 from .location import LocatedPoints, Uncached
 from .recovery import HarmonicField
@@ -240,27 +240,25 @@ def contact_estimates(
     """
     final, companion = levels.final, levels.companion
     assert companion is not None
-    (a, approach), (other_a, other_approach) = (_at_load(contact, load) for contact in (final, companion))
+    # contact radius and approach of each if it had exactly the load
+    (a, approach), (other_a, other_approach) = (
+        (one.radius_at(load), one.approach + (load - one.load) / one.stiffness) for one in (final, companion)
+    )
     # a force out of balance is a load that the solution does not carry: rounding, across a large contrast
     load_residual = abs(final.load / load - 1) + final.residual
-    bodies = (None, companion.ball)
-    coarser = [
-        ElasticState.of_contact(state.solid, companion, body)
-        for state, body in zip(states, bodies, strict=False)
-    ]
     edge, other_edge = final.edge_displacement, companion.edge_displacement
     # what the displaced edges leave of the difference of the radii is due to all other triangles
     changes = abs((a - other_a) + (edge - other_edge)), abs(approach - other_approach)
-    found = tuple(
-        estimates(state, coarse, units, changes, load_residual, abs(edge), size, states)
-        for state, coarse in zip(states, coarser, strict=True)
-    )
+    found = []
+    for state, body in zip(states, (None, companion.ball), strict=False):
+        coarse = ElasticState.of_contact(state.solid, companion, body)
+        found.append(estimates(state, coarse, units, changes, load_residual, abs(edge), size, states))
     truncation = sum(state.truncation(0)[0] for state in states) / final.approach
     stiffness = (
         _functional_factor(final.discretisation.order, size) * abs(final.stiffness - companion.stiffness)
         + (load_residual + truncation) * final.stiffness
     )
-    return found, float(stiffness * units.load / units.displacement)
+    return tuple(found), float(stiffness * units.load / units.displacement)
 
 
 def estimates(
@@ -271,20 +269,19 @@ def estimates(
     load_residual: float,
     edge: float,
     size: float,
-    bodies: tuple[ElasticState, ...] = (),
+    bodies: tuple[ElasticState, ...],
 ) -> Estimates:
     """Uncertainty of a frictionless ``state``.
 
     changes : of contact radius and approach from the mesh of the companion, at one load
     load_residual : relative error of the load
     edge : displacement of the contact edge by the size of the last triangle
-    size : of the mesh.  bodies : the states of all bodies in contact, by default this one alone
+    size : of the mesh.  bodies : the states of all bodies in contact
     """
     d = state.discretisation
-    at, largest = peak(state.pressure, d.contact_vertices)
-    a = d.mesh.contact_radius
+    vertices, a = d.contact_vertices, d.mesh.contact_radius
+    at, largest = peak(state.pressure, vertices)
     size_radius, size_approach = changes
-    bodies = bodies or (state,)
     far_approach, far_stress, curvature = np.sum([body.truncation(0) for body in bodies], axis=0)
     # The sphere has curvature 1; at given load a ~ R^(1/3) and p0 ~ R^(-2/3), on the bare substrate. A given
     # pressure with its radius is exact.
@@ -302,14 +299,9 @@ def estimates(
     size_radius *= factor
     radius_error = size_radius + SAFETY * edge + far_radius + balance
     everywhere = far_pressure + load_residual / 3 * largest
+    stretch = companion.mesh.contact_radius / a
     pressure = PressureEstimate(
-        state.pressure,
-        companion.pressure,
-        d.contact_vertices,
-        companion.mesh.contact_radius / a,
-        pointwise,
-        radius_error,
-        everywhere,
+        state.pressure, companion.pressure, vertices, stretch, pointwise, radius_error, everywhere
     )
     size_peak = float(pressure(np.array([at]))[0]) - everywhere
     rows: tuple[tuple[str, str, float], ...] = (
@@ -327,17 +319,16 @@ def estimates(
     budget = tuple((quantity, origin, float(value)) for quantity, origin, value in rows)
     total = {name: sum(value for quantity, _, value in budget if quantity == name) for name, _, _ in budget}
     points = ComparisonPoints(d, companion.discretisation)
-    relative = load_residual + radius_error / a + share
     normal = StressEstimate(
         state.normal,
         companion.normal,
         points,
-        _coarseness(size) ** 2,
-        SAFETY / (COMPANION ** (d.order + 1) - 1) * _coarseness(size) ** 2,
-        radius_error,
-        relative,
-        float(far_stress + pollution),
-        float(far_approach),
+        factor=_coarseness(size) ** 2,
+        moved=SAFETY / (COMPANION ** (d.order + 1) - 1) * _coarseness(size) ** 2,
+        radius_error=radius_error,
+        relative=load_residual + radius_error / a + share,
+        everywhere=float(far_stress + pollution),
+        far=float(far_approach),
     )
     scalars = Uncertainty(**total, budget=budget)
     return Estimates(scalars, pressure, normal, None, companion, float(pollution))
@@ -360,8 +351,3 @@ def _functional_factor(order: int, size: float) -> float:
 
 def _coarseness(size: float) -> float:
     return max(1.0, size / _ASYMPTOTIC_SIZE)
-
-
-def _at_load(contact: FixedRadiusContact, load: float) -> tuple[float, float]:
-    """Contact radius and approach of the ``contact`` if it had exactly the ``load``."""
-    return contact.radius_at(load), contact.approach + (load - contact.load) / contact.stiffness

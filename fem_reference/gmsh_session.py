@@ -44,15 +44,6 @@ _OPTIONS = {
 }
 
 
-def _load() -> ModuleType:
-    """The gmsh module, or an ImportError whose message names the missing system packages."""
-    try:
-        import gmsh
-    except (ImportError, OSError) as error:
-        raise ImportError(_MISSING.format(reason=error)) from error
-    return gmsh
-
-
 def _start(gmsh: ModuleType) -> None:
     """gmsh without signal handlers or configuration files, the answer to a closed pipe as it was before.
 
@@ -80,7 +71,10 @@ def session(name: str) -> Iterator[Any]:
     Raises ImportError (naming the apt packages) when gmsh's system libraries are missing.
     """
     with _LOCK:
-        gmsh = _load()
+        try:
+            import gmsh
+        except (ImportError, OSError) as error:
+            raise ImportError(_MISSING.format(reason=error)) from error
         running = bool(gmsh.isInitialized())
         if not running:
             _start(gmsh)

@@ -130,10 +130,10 @@ def solid_points(locator: Locator, length: float, x: Any, y: Any, z: Any, layer:
     shape = x.shape
     x, y, z = x.ravel(), y.ravel(), z.ravel().copy()
     r = np.hypot(x, y)
-    depths, far = mesh.depths * length, float(mesh.points.max()) * length
-    levels = np.concatenate([[0.0], depths])
-    thickness = np.diff(levels, append=np.inf)
-    for k, level in enumerate(levels):
+    far = float(mesh.points.max()) * length
+    levels = np.array([0.0, *(mesh.depths * length), np.inf])
+    thickness = np.diff(levels)
+    for k, level in enumerate(levels[:-1]):
         h = min(thickness[max(k - 1, 0)], thickness[k], mesh.contact_radius * length)
         z[np.abs(z - level) <= 1e-9 * h] = level
     if z.size and not (np.all(z >= 0) and np.all(np.isfinite(r)) and np.all(np.isfinite(z))):
@@ -145,11 +145,11 @@ def solid_points(locator: Locator, length: float, x: Any, y: Any, z: Any, layer:
             f"choose a larger far boundary"
         )
     # the upper side of an interface belongs to the layer above it
-    layers = np.searchsorted(depths, z, side="left")
+    layers = np.searchsorted(levels[1:-1], z, side="left")
     if layer is not None:
-        if not 0 <= layer <= depths.size:
-            raise ValueError(f"layer = {layer}; the solid has layers 0 to {depths.size}")
-        lower, upper = levels[layer], np.append(depths, np.inf)[layer]
+        if not 0 <= layer <= mesh.depths.size:
+            raise ValueError(f"layer = {layer}; the solid has layers 0 to {mesh.depths.size}")
+        lower, upper = levels[layer : layer + 2]
         outside = (z < lower) | (z > upper)
         if np.any(outside):
             raise ValueError(

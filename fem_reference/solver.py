@@ -15,8 +15,9 @@ from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact, complementarity, peak
 from .estimate import Estimates, contact_estimates, estimates
 from .levels import NotConverged, companion_grading, final_grading, meshes_at, solve_levels
-from .loading import resultant
+from .loading import resultant, solve_traction
 from .mesh import Grading
+from .recovery import HarmonicField
 from .scaling import LayeredSolid, Units
 from .solution import BodyFields, Diagnostics, Solution
 from .state import ElasticState
@@ -181,14 +182,15 @@ def solve_prescribed(
     check_proportions(solid.thicknesses, "load_radius")
 
     def state_on(grading: Grading) -> ElasticState:
-        (mesh,) = meshes_at((solid,), grading, 1.0)
-        return ElasticState.under_pressure(solid, Discretisation(mesh, order), p)
+        d = Discretisation(meshes_at((solid,), grading, 1.0)[0], order)
+        fields = solve_traction(d, solid, 0, p)
+        return ElasticState(solid, HarmonicField(d, fields, solid.materials, 0, p, -1.0, False), None)
 
     state, found = state_on(final_grading(size)), None
     if estimate_uncertainty:
         companion = state_on(companion_grading(size))
         change = abs(state.central_displacement - companion.central_displacement)
-        found = estimates(state, companion, unit, (0.0, change), load_residual=0.0, edge=0.0, size=size)
+        found = estimates(state, companion, unit, (0.0, change), 0.0, 0.0, size, (state,))
     d = state.discretisation
     nodes = _surface_nodes(d)
     frictionless = Solution(

@@ -32,14 +32,6 @@ class ElasticState:
         field = HarmonicField(side.discretisation, side.fields, solid.materials, 0, pressure, -1.0, True)
         return cls(solid, field, None)
 
-    @classmethod
-    def under_pressure(
-        cls, solid: LayeredSolid, d: Discretisation, pressure: Callable[[np.ndarray], np.ndarray]
-    ) -> "ElasticState":
-        """The state under a prescribed ``pressure`` (r) within the contact radius of the mesh of ``d``."""
-        fields = solve_traction(d, solid, 0, pressure)
-        return cls(solid, HarmonicField(d, fields, solid.materials, 0, pressure, -1.0, False), None)
-
     def with_friction(self, friction: float) -> "ElasticState":
         """The state with the tangential traction ``friction`` times the pressure; the pressure stays."""
         if friction == 0:
