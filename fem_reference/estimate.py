@@ -269,19 +269,20 @@ def estimates(
     load_residual: float,
     edge: float,
     size: float,
-    bodies: tuple[ElasticState, ...],
+    bodies: tuple[ElasticState, ...] = (),
 ) -> Estimates:
     """Uncertainty of a frictionless ``state``.
 
     changes : of contact radius and approach from the mesh of the companion, at one load
     load_residual : relative error of the load
     edge : displacement of the contact edge by the size of the last triangle
-    size : of the mesh.  bodies : the states of all bodies in contact
+    size : of the mesh.  bodies : the states of all bodies in contact, by default this one alone
     """
     d = state.discretisation
     vertices, a = d.contact_vertices, d.mesh.contact_radius
     at, largest = peak(state.pressure, vertices)
     size_radius, size_approach = changes
+    bodies = bodies or (state,)
     far_approach, far_stress, curvature = np.sum([body.truncation(0) for body in bodies], axis=0)
     # The sphere has curvature 1; at given load a ~ R^(1/3) and p0 ~ R^(-2/3), on the bare substrate. A given
     # pressure with its radius is exact.

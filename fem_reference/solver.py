@@ -190,7 +190,7 @@ def solve_prescribed(
     if estimate_uncertainty:
         companion = state_on(companion_grading(size))
         change = abs(state.central_displacement - companion.central_displacement)
-        found = estimates(state, companion, unit, (0.0, change), 0.0, 0.0, size, (state,))
+        found = estimates(state, companion, unit, (0.0, change), load_residual=0.0, edge=0.0, size=size)
     d = state.discretisation
     nodes = _surface_nodes(d)
     frictionless = Solution(

@@ -24,24 +24,14 @@ class PlaneMesh:
     """The plane y = 0 as quadratic triangles, no node shared between layers.
 
     points : [m], (n, 3).   cells : (m, 6), corners, then the middles of the sides.   layer : of a cell, (m,).
-    displacement : [m], (n, 3).   stress : [Pa], (3, 3, n), on its own side of an interface.
+    point_data : fields by name with unit: displacement (n, 3), stresses (n,) on their own side of an
+        interface, and that of von Mises, sqrt(3/2 s:s) of the deviator s
     """
 
     points: np.ndarray
     cells: np.ndarray
     layer: np.ndarray
-    displacement: np.ndarray
-    stress: np.ndarray
-
-    @property
-    def point_data(self) -> dict[str, np.ndarray]:
-        """Every field at the points by its name with its unit; von Mises: sqrt(3/2 s:s) of the deviator s."""
-        deviator = self.stress - np.eye(3)[:, :, None] * np.einsum("iin->n", self.stress) / 3
-        return {
-            "displacement [m]": self.displacement,
-            **{f"sigma_{name} [Pa]": self.stress[ij] for name, ij in STRESSES.items()},
-            "von_mises [Pa]": np.sqrt(1.5 * np.einsum("ijn,ijn->n", deviator, deviator)),
-        }
+    point_data: dict[str, np.ndarray]
 
 
 def plane_mesh(solution: "Solution") -> PlaneMesh:
@@ -66,13 +56,14 @@ def plane_mesh(solution: "Solution") -> PlaneMesh:
         mine = owner == k
         displacement[mine] = solution.displacement(x[mine], 0.0, z[mine]).T
         sigma[:, :, mine] = solution.stress(x[mine], 0.0, z[mine], layer=k)
-    return PlaneMesh(
-        np.stack([x, np.zeros(x.size), z], axis=1),
-        np.concatenate(blocks),
-        np.tile(mesh.layer, len(halves)),
-        displacement,
-        sigma,
-    )
+    deviator = sigma - np.eye(3)[:, :, None] * np.einsum("iin->n", sigma) / 3
+    point_data = {
+        "displacement [m]": displacement,
+        **{f"sigma_{name} [Pa]": sigma[ij] for name, ij in STRESSES.items()},
+        "von_mises [Pa]": np.sqrt(1.5 * np.einsum("ijn,ijn->n", deviator, deviator)),
+    }
+    points = np.stack([x, np.zeros(x.size), z], axis=1)
+    return PlaneMesh(points, np.concatenate(blocks), np.tile(mesh.layer, len(halves)), point_data)
 
 
 def write_vtu(solution: "Solution", path: str | PathLike[str]) -> Path:
