@@ -224,7 +224,7 @@ class Estimates:
                 self.normal,
                 field=state.tangential,
                 companion=companion.tangential,
-                everywhere=everywhere + friction * self.pollution,
+                everywhere=everywhere + abs(friction) * self.pollution,
                 far=far,
             )
         return replace(self, companion=companion, tangential=estimate)

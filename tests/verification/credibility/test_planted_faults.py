@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from verification.cases.case_file import read_case, shipped_cases
+from verification.cases.case_file import default_cases, read_case, shipped_cases
 from verification.commands.credibility.faults import faults
 from verification.credibility.faults import fault_campaign
 from verification.credibility.faults.default_checks import Check
@@ -31,7 +31,7 @@ ALL = tuple((FAULTS | CONTROLS).values())
 def test_a_fault_says_what_is_wrong_where_it_sits_what_should_catch_it(fault):
     assert fault.changes
     assert fault.predicted
-    assert set(fault.cases) <= set(shipped_cases())
+    assert set(fault.cases) <= set(default_cases())
     assert fault.where in (*source_registry.solvers(), "harness", "published")
 
 
