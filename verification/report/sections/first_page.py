@@ -98,7 +98,7 @@ def asked(material: Material) -> str:
     results = material.results
     contacts = sum(not result.published for result in results)
     published = len(results) - contacts
-    texts = [f"{_counted(contacts, 'contact')} of a sphere with a coated solid"] if contacts else []
+    texts = [f"{_counted(contacts, 'contact')} with a coated solid"] if contacts else []
     texts += [_counted(published, "published source")] if published else []
     return f"{' and '.join(texts)}, solved by independent methods." if texts else ""
 
