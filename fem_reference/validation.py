@@ -102,7 +102,7 @@ def check_radius(contact_radius: float, radius: float) -> None:
     """Raise ValueError for a contact as wide as the sphere, of which the gap is not a parabola."""
     if contact_radius > LARGEST_RADIUS * radius:
         raise ValueError(
-            f"contact radius a = {contact_radius:g} m is {contact_radius / radius:.2g} of the sphere's; "
+            f"contact radius a = {contact_radius:g} m is {contact_radius / radius:.2g} of the sphere's radius; "
             f"the parabolic gap and small strains hold below {LARGEST_RADIUS:g}, and well below 0.1"
         )
 
@@ -151,7 +151,9 @@ def prescribed_pressure(
 
 def _check_material(where: str, E: float, nu: float) -> None:
     check_positive(**{f"E {where}": E})
-    if not (_is_number(nu) and -1 < nu < 0.5):
+    if not (_is_number(nu) and -1 < nu <= 0.5):
+        raise ValueError(f"nu {where} = {nu!r}; an isotropic solid has -1 < nu <= 0.5")
+    if nu == 0.5:
         raise ValueError(
             f"nu {where} = {nu!r}; the finite element method needs -1 < nu < 0.5, such as 0.499 for nearly "
             "incompressible"
