@@ -101,9 +101,10 @@ def check_proportions(thicknesses: Sequence[float], unit: str, of: str = "") -> 
 def check_radius(contact_radius: float, radius: float) -> None:
     """Raise ValueError for a contact as wide as the sphere, of which the gap is not a parabola."""
     if contact_radius > LARGEST_RADIUS * radius:
+        share = contact_radius / radius
         raise ValueError(
-            f"contact radius a = {contact_radius:g} m is {contact_radius / radius:.2g} of the sphere's radius; "
-            f"the parabolic gap and small strains hold below {LARGEST_RADIUS:g}, and well below 0.1"
+            f"contact radius a = {contact_radius:g} m is {share:.2g} of the sphere's radius; the parabolic "
+            f"gap and small strains hold below {LARGEST_RADIUS:g}, and well below 0.1"
         )
 
 
