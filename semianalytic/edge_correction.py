@@ -15,11 +15,10 @@ from numpy.typing import NDArray
 from semianalytic import edge_shape, influence, smooth_edge
 from semianalytic.arrays import namespace, to_numpy
 from semianalytic.edge_shape import Shape, Step
-from semianalytic.inputs import Body
 from semianalytic.level import Level, LevelProblem
 from semianalytic.smooth_edge import EdgePatches
 
-__all__ = ["corrected", "unresolved"]
+__all__ = ["corrected"]
 
 Array = NDArray[np.floating]
 
@@ -100,7 +99,7 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
         if not abs(missing) < LOST * grid.force(p):
             return None
         problem.gap = gap + xp.asarray(u)
-        del edge, u  # a hundred numbers a patch at the edge, which the iteration does not need
+        del edge, u  # two hundred numbers a patch at the edge, which the iteration does not need
         level = problem.solve(0.0, missing, start=xp.asarray(p))
         convolutions += level.convolutions + 1
         p = to_numpy(level.found.pressure)
@@ -162,20 +161,13 @@ def _terms(shape: Shape, d: float) -> int:
     t = 1.4 e asinh(1/e)/M^2, is to be no nearer than a quarter of a patch. They grow in number with the
     patches, so that a refinement study shows what the polynomials leave out too.
     """
+    if np.isinf(shape.layer):
+        return FEW
     patches, e = min(shape.axes) / d, shape.layer
-    length = 0.0 if np.isinf(e) else float(np.arcsinh(1 / e))
-    wanted = (
-        FEW
-        if np.isinf(e)
-        else LAYERED[0] + LAYERED[1] * length + max(0.0, np.log(patches / USUAL) / np.log(1.4))
-    )
-    rate = 1.0 if np.isinf(e) else e * length
-    return int(max(FEW, min(wanted, patches / 4, RESOLVED * np.sqrt(rate * patches))))
-
-
-def unresolved(body: Body, d: float) -> bool:
-    """Whether patches of side ``d`` [m] are too large for what happens within the thickness of a film."""
-    return body.response is not None and body.response.depth < 2 * d
+    length = float(np.arcsinh(1 / e))
+    finer = max(0.0, float(np.log(patches / USUAL) / np.log(1.4)))
+    wanted = LAYERED[0] + LAYERED[1] * length + finer
+    return int(max(FEW, min(wanted, patches / 4, RESOLVED * np.sqrt(e * length * patches))))
 
 
 def _near_influence(problem: LevelProblem) -> Array:

@@ -136,11 +136,18 @@ class Shape:
         tau: Array = (2 / np.arcsinh(1 / self.layer)) * np.arcsinh(t / self.layer) - 1
         return tau
 
+    def _argument_slope(self, t: Array) -> Array | float:
+        """dtau/dt."""
+        if np.isinf(self.layer):
+            return 2.0
+        slope: Array = 2 / (np.hypot(t, self.layer) * np.arcsinh(1 / self.layer))
+        return slope
+
     def _smooth(self, t: Array, H: Array) -> Array:
         """q [Pa]."""
-        total = np.zeros(t.shape)
+        total, tau = np.zeros(t.shape), self._argument(t)
         for h, b in zip(H, self.coefficients.T, strict=True):
-            total += h * legendre.legval(self._argument(t), b)
+            total += h * legendre.legval(tau, b)
         return total
 
     def columns(self, x: Array, y: Array, blunt: float) -> Array:
@@ -151,11 +158,10 @@ class Shape:
         t = np.clip(t, 0, 1)
         root = np.sqrt(t)
         P = np.moveaxis(legendre.legvander(self._argument(t), M - 1), -1, 0)
-        rate = 2.0 if np.isinf(self.layer) else 2 / (np.hypot(t, self.layer) * np.arcsinh(1 / self.layer))
         of_b = (root * inside) * P[:, None] * H
         slope = legendre.legder(self.coefficients) if M > 1 else 0 * self.coefficients
         q = np.einsum("mk,mxy,kxy->xy", self.coefficients, P, H, optimize=True)
-        dq = rate * np.einsum("mk,mxy,kxy->xy", slope, P[: len(slope)], H, optimize=True)
+        dq = self._argument_slope(t) * np.einsum("mk,mxy,kxy->xy", slope, P[: len(slope)], H, optimize=True)
         of_t = np.where(inside, q / (2 * np.sqrt(np.maximum(t, blunt))) + root * dq, 0.0)
         of_c = [2 * of_t * (s2 if n == 0 else h) for n, h in zip(self.harmonics, H, strict=True)]
         return np.concatenate([of_b.reshape(-1, *t.shape), of_c])

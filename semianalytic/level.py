@@ -154,13 +154,13 @@ class Level:
     def rest(self) -> Array | None:
         """Pressure of the patches less that of the shape [Pa], inside; None where it is their own error.
 
-        That is a ripple of some 1e-4 of the peak where smooth patches and parts meet (``smooth_edge``).
+        Patches within a few of the edge err by some 1e-4 of the peak, which the fit of the shape averages.
         """
         if self.shape is None or self.edge is None:
             return None
         x, p, edge = self.grid.x, self.found.pressure, self.edge
         rest = p - self.shape.pressure(x[:, None], x[None, :])
-        # a shape fitted near the edge alone fades where patches and parts may still share a patch
+        # in the patches at the edge, less what the parts carry of the shape
         rest[edge.i, edge.j] += edge.centre - p[edge.i, edge.j]
         rest[self.found.pressure <= 0] = 0.0
         return rest if np.abs(rest).max() > RIPPLE * self.found.pressure.max() else None

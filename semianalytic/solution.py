@@ -39,7 +39,7 @@ DEFLECTED = 0.2  # of that floor over the peak pressure, that the displacement o
 # relative uncertainty of a, 5 times its error in the median; in full below as many patches
 DEEP = 0.1, 32.0
 # likewise near the edge, of the ripple of the patches, which the shape averages, and of the largest change
-# there; as far as patches and shape meet
+# there; within some patches of it
 RIPPLE, WANDERING, TAPER = 0.9, 1.0, 16.0
 RESOLUTION = 1e-7  # of the pressure of patches: its response to the gap the iteration leaves
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from semianalytic import convolution, influence
 from semianalytic.arrays import namespace
-from semianalytic.edge_correction import unresolved
 from semianalytic.grid import odd
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level
@@ -105,7 +104,7 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
         "iteration": _of_iteration(last, indenter),
     }
     edge = last.staircase
-    if last.shape and unresolved(body, last.grid.d):
+    if last.shape and _unresolved(body, last.grid.d):
         edge = max(edge, UNRESOLVED * last.grid.d)
     smooth = np.multiply(SMOOTH, OUTSIDE if last.shape and last.shape.outside else 1.0)
     factor, share = smooth if last.shape else (safety(last.grid.n / levels[-2].grid.n), PATCHES)
@@ -113,6 +112,11 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
     return Uncertainty.from_levels(
         fine, middle, coarse, variations, factor=factor, share=share, edge=edge, inside=inside
     )
+
+
+def _unresolved(body: Body, d: float) -> bool:
+    """Whether patches of side ``d`` [m] are too large for what happens within the thickness of a film."""
+    return body.response is not None and body.response.depth < 2 * d
 
 
 def is_met(accuracy: float, estimate: Uncertainty, levels: list[Level]) -> bool:
