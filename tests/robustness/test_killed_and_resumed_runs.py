@@ -1,4 +1,4 @@
-"""Runs that are killed and resumed, or repeated, come to the same numbers, to the last bit."""
+"""Runs that are killed and resumed, or repeated, give the same numbers, to the last bit."""
 
 from pathlib import Path
 

@@ -6,7 +6,6 @@ from types import SimpleNamespace
 import pytest
 from synthetic_study import study
 
-from semianalytic import rings, smooth_edge
 from verification.credibility import accuracy_study as accuracy_study
 from verification.credibility.exact_errors import FILMS, HERTZ, ExactError
 from verification.credibility.faults.fault_planting import Edit, planted
@@ -34,21 +33,8 @@ def staircase(last=FINE):
     )
 
 
-def forget_tables():
-    """Tables that a planted fault has spoiled are not kept for the tests after it."""
-    for table in (rings._around_node, rings._gauss, smooth_edge._stencil):
-        table.cache_clear()
-
-
-@pytest.fixture(autouse=True)
-def fresh_tables():
-    yield
-    forget_tables()
-
-
 @pytest.fixture(scope="module")
 def clean():
-    forget_tables()
     return accuracy_study.quick()
 
 

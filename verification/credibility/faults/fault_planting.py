@@ -74,8 +74,12 @@ class Fault:
 
 @contextmanager
 def planted(changes: tuple[Edit | Constant, ...]) -> Iterator[None]:
-    """Context in which the running code has ``changes``. Raises PlantError where one does not fit."""
+    """Context in which the running code has ``changes``. Raises PlantError where one does not fit.
+
+    Tables that functions keep are forgotten before and after: they are those of the code that filled them.
+    """
     with ExitStack() as stack:
+        stack.callback(_forget_tables)
         for change in changes:
             owner, name = _owner(change.target)
             if name not in vars(owner):
@@ -95,7 +99,17 @@ def planted(changes: tuple[Edit | Constant, ...]) -> Iterator[None]:
             for place, known in places:
                 stack.callback(setattr, place, known, original)
                 setattr(place, known, changed)
+        _forget_tables()
         yield
+
+
+def _forget_tables() -> None:
+    """Empty the caches of all functions of the packages."""
+    for key, module in list(sys.modules.items()):
+        if key.split(".")[0] in PACKAGES:
+            for value in list(vars(module).values()):
+                if callable(clear := getattr(value, "cache_clear", None)):
+                    clear()
 
 
 def _holders(function: Any) -> list[tuple[Any, str]]:
