@@ -173,8 +173,7 @@ def _exact(problem: CoatedContact, source: str, points: int) -> list[Profile]:
         position = np.linspace(0, 2 * a, points)
         bell = 1 / (1 + (position / a) ** 2)
         quantities = dict.fromkeys(STRESSES, -p0) if line.name != "oblique surface" else {}
-        if line.name != "off plane":
-            quantities |= dict.fromkeys(DISPLACEMENTS, problem.delta_h)
+        quantities |= dict.fromkeys(DISPLACEMENTS, problem.delta_h)
         found += [Profile(n, line.name, position, size * bell, source) for n, size in quantities.items()]
     return found
 

@@ -59,17 +59,20 @@ def _off_plane(problem: CoatedContact, pairs: tuple[tuple[str, str], ...]) -> li
     for line in oblique_lines(problem):
         if line.place != "oblique surface":
             claims += [Claim(n, line.name, pair, QUANTITIES[n].cap, why) for n in STRESSES for pair in pairs]
-        if line.place != "off plane":
-            claims += [
-                Claim(n, line.name, pair, QUANTITIES[n].cap, why) for n in DISPLACEMENTS for pair in displaced
-            ]
+        claims += [
+            Claim(n, line.name, pair, QUANTITIES[n].cap, why) for n in DISPLACEMENTS for pair in displaced
+        ]
     return claims
 
 
 def _quantities(line: Line, problem: CoatedContact) -> tuple[str, ...]:
     if line.place == "surface":
-        # sigma_zz = -p and sigma_xz = -f p hold by construction there; the pressure says it all.
-        return (*(("pressure",) if line.body == FLAT else ()), "sigma_xx", "sigma_yy")
+        # sigma_zz = -p holds by construction there; the pressure says it all.
+        return (
+            *(("pressure",) if line.body == FLAT else ()),
+            *("sigma_xx", "sigma_yy"),
+            *(("sigma_xz",) if problem.friction else ()),
+        )
     if line.place == "axis":
         return ("sigma_xx", "sigma_zz", *(("sigma_xz",) if problem.friction else ()))
     return tuple(IN_PLANE)

@@ -63,7 +63,8 @@ class Line:
 
 def coordinate_of(line: str) -> str:
     """The coordinate that runs along the line of this name, s where none does."""
-    return {"axis": "z", "oblique": "s", "oblique surface": "s"}.get(line.removeprefix(ON_BALL), "x")
+    along = {"axis": "z", "off plane": "s", "oblique": "s", "oblique surface": "s"}
+    return along.get(line.removeprefix(ON_BALL), "x")
 
 
 def line_of(name: str, problem: CoatedContact) -> Line:
@@ -110,7 +111,8 @@ def lines_of(problem: CoatedContact) -> tuple[Line, ...]:
 def oblique_lines(problem: CoatedContact) -> tuple[Line, ...]:
     """Lines off the plane y = 0, which have all six stresses and all three displacements; of each body.
 
-    off plane : along x at y = 0.4 a_h, at depth 0.3 a_h or in the middle of a thinner first coating.
+    off plane : through the axis along (2, 1), on which patches have their centres; 0.6 a_h deep, or 0.7 a_h
+                where an interface is close to that.
     oblique : from (-0.9, -0.2, 0) a_h down below the contact, through the layers.
     oblique surface : on the surface through the origin, at 30 degrees from x.
     """
@@ -118,9 +120,10 @@ def oblique_lines(problem: CoatedContact) -> tuple[Line, ...]:
     found: list[Line] = []
     for body in problem.bodies:
         before = ON_BALL if body == BALL else ""
-        depth = min([0.3 * a, *(h / 2 for _, _, h in problem.seen_from(body).coatings[:1])])
+        close = any(abs(z - 0.6 * a) < 0.05 * a for z in problem.seen_from(body).interfaces)
+        depth = (0.7 if close else 0.6) * a
         found += [
-            Line(f"{before}off plane", None, 0, (0.0, 0.4 * a, depth), body=body),
+            Line(f"{before}off plane", None, None, (0.0, 0.0, depth), (0.8**0.5, 0.2**0.5, 0.0), body),
             Line(f"{before}oblique", None, None, (-0.9 * a, -0.2 * a, 0.0), (0.48, 0.36, 0.8), body),
             Line(f"{before}oblique surface", None, 0, direction=(0.75**0.5, 0.5, 0.0), body=body),
         ]

@@ -76,7 +76,7 @@ def positions(
         if line.coordinate == "z":
             return z[line.body]
         if line.depth is None:
-            at = oblique_sampling.positions(problem, line, a)
+            at = oblique_sampling.positions(problem, line, a, getattr(first, "nodes", nodes))
             return _clear_of_edges(first, line, at, CLEAR * a) if shaped else at
         if shaped and line.depth > 0:
             return _clear_of_edges(first, line, x, CLEAR * a)

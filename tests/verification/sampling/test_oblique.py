@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from verification.problem.coated_contact import CoatedContact, NotClaimed
+import semianalytic
+from verification.problem.coated_contact import CoatedContact, NotClaimed, keywords
 from verification.problem.line_profile import line_of, oblique_lines
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
 from verification.sampling import oblique_sampling
@@ -13,6 +14,7 @@ STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL, 0.25)
 A = BARE.a_h
 STACK = tuple((100e9 * k, 0.3, h * A) for k, h in ((1, 0.05), (4, 0.3), (2, 0.1), (6, 0.6), (3, 0.2)))
+NODES = 1.2 * A * np.linspace(-1, 1, 129)
 HAMILTON = Hamilton(10e-3, 20.0, *STEEL, 0.25)
 
 
@@ -21,7 +23,7 @@ HAMILTON = Hamilton(10e-3, 20.0, *STEEL, 0.25)
 def test_oblique_line_visits_every_layer_and_no_interface(coatings, friction):
     problem = CoatedContact(10e-3, 20.0, coatings, STEEL, friction)
     line = line_of("oblique", problem)
-    x, y, z = line.points(oblique_sampling.positions(problem, line, A))
+    x, y, z = line.points(oblique_sampling.positions(problem, line, A, NODES))
     bounds = np.array([0.0, *problem.interfaces])
     assert set(np.searchsorted(bounds, z) - 1) == set(range(len(coatings) + 1))
     assert np.abs(z[:, None] - bounds).min() > 1e-5 * A
@@ -32,7 +34,7 @@ def test_surface_line_goes_to_five_contact_radii_on_both_sides_where_it_slides()
     for friction, least in ((0.25, -5.0), (0.0, 0.0)):
         problem = CoatedContact(10e-3, 20.0, (), STEEL, friction)
         line = line_of("oblique surface", problem)
-        s = oblique_sampling.positions(problem, line, A)
+        s = oblique_sampling.positions(problem, line, A, NODES)
         x, y, z = line.points(s)
         assert (s.min(), s.max()) == pytest.approx((least * A, 5 * A))
         assert np.all(z == 0)
@@ -41,15 +43,14 @@ def test_surface_line_goes_to_five_contact_radii_on_both_sides_where_it_slides()
 
 def test_profiles_hold_the_six_stresses_and_three_displacements_of_their_points():
     for line in oblique_lines(BARE):
-        position = oblique_sampling.positions(BARE, line, A)
+        position = oblique_sampling.positions(BARE, line, A, NODES)
         found = {p.quantity: p.value for p in oblique_sampling.sample(HAMILTON, "hamilton", line, position)}
         at = line.points(position)
         if line.name != "oblique surface":
             sigma = HAMILTON.stress(*at)
             assert all(np.array_equal(found[name], sigma[c]) for name, c in STRESSES.items())
-        if line.name != "off plane":
-            u = HAMILTON.displacement(*at)
-            assert all(np.array_equal(found[name], u[i]) for i, name in enumerate(DISPLACEMENTS))
+        u = HAMILTON.displacement(*at)
+        assert all(np.array_equal(found[name], u[i]) for i, name in enumerate(DISPLACEMENTS))
 
 
 def test_source_that_claims_no_displacement_has_no_profile_of_it():
@@ -60,3 +61,16 @@ def test_source_that_claims_no_displacement_has_no_profile_of_it():
     line = line_of("oblique", BARE)
     found = oblique_sampling.sample(Stressed(10e-3, 20.0, *STEEL, 0.25), "s", line, np.array([A, 2 * A]))
     assert {p.quantity for p in found} == set(STRESSES)
+
+
+def test_off_plane_line_of_the_semi_analytical_method_comes_from_its_fields_on_planes():
+    solution = semianalytic.solve(**keywords(BARE), patches=65, estimate_uncertainty=False)
+    line = line_of("off plane", BARE)
+    s = oblique_sampling.positions(BARE, line, A, solution.nodes)
+    x, y, z = line.points(s)
+    i, j = (np.abs(solution.nodes[:, None] - at).argmin(axis=0) for at in (x, y))
+    found = {p.quantity: p.value for p in oblique_sampling.sample(solution, "semi", line, s)}
+    sigma, u = solution.stress_plane(z[0]), solution.displacement_plane(z[0])
+    assert s.size > 15
+    assert all(np.array_equal(found[name], sigma[(*c, i, j)]) for name, c in STRESSES.items())
+    assert all(np.array_equal(found[name], u[k, i, j]) for k, name in enumerate(DISPLACEMENTS))

@@ -94,7 +94,7 @@ def of_coverage() -> Answers:
         "surface": (-2.0, 2.0, 0.06),
         "axis": (0.0, 4.0, 0.2),
         "contact": (0.0, 0.0, 0.0),
-        "off plane": (-2.5, 2.5, 0.13),
+        "off plane": (-1.2, 1.2, 0.13),
         "oblique": (0.0, 2.4, 0.26),
         "oblique surface": (-5.0, 5.0, 0.8),
     }

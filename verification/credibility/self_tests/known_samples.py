@@ -45,7 +45,7 @@ def of_sampling() -> Answers:
             yield "its uncertainty", None if stated is None else float(stated[1]), 1e-3 * wanted
     # by hand: a_h = 1e-4 m; the line, its layer, the second point
     for name, layer, point in (
-        ("off plane", 0, (3e-5, 4e-5, 2.5e-5)),
+        ("off plane", None, (3e-5 * 0.8**0.5, 3e-5 * 0.2**0.5, 6e-5)),
         ("oblique", None, (-9e-5 + 1.44e-5, -2e-5 + 1.08e-5, 2.4e-5)),
         ("oblique surface", 0, (3e-5 * 0.75**0.5, 1.5e-5, 0.0)),
     ):
