@@ -16,7 +16,7 @@ __all__ = ["WIDER", "Uncertainty", "change", "is_met", "of_contact", "other_conv
 WIDER = 1.25  # the box that tests the domain over the box in use
 SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge
 OUTSIDE = 3.0  # times as much where the shape is fitted near the edge alone
-SECOND = 1e-3  # of the approach, times (d/a)^2: what patches leave of the deflection inside, 5e-4 observed
+SECOND = 1e-3  # of approach and peak, times (d/a)^2: what patches leave of deflection and pressure inside
 UNRESOLVED = 0.03  # patches by which the edge of a film thinner than two of them may be wrong
 # over the accuracy asked, of the change of the pressure at the same x/a; the part that is left of the change
 # before: it was seen to fall 2.4 to 10 times from one grid to the next
@@ -61,13 +61,14 @@ class Uncertainty:
 
         Patch size: ``factor`` times the change to the finest grid, or ``share`` of the change before where
         the last is small by chance, or ``edge``, the error of the contact radius by patches that the edge
-        cuts [m], or ``inside``, that of the deflection there, relative.
+        cuts [m], or ``inside``, that of deflection and pressure there, relative.
         """
         # an error of the edge is of the second order in the approach, which is stationary in the contact's
         # area
         least = {
             "contact_radius": edge,
             "approach": fine["approach"] * (inside + (edge / fine["contact_radius"]) ** 2),
+            "peak_pressure": fine["peak_pressure"] * inside,
         }
         rows = []
         for name, value in fine.items():

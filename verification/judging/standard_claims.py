@@ -66,13 +66,11 @@ def _off_plane(problem: CoatedContact, pairs: tuple[tuple[str, str], ...]) -> li
 
 
 def _quantities(line: Line, problem: CoatedContact) -> tuple[str, ...]:
+    sheared = ("sigma_xz",) if problem.friction else ()
     if line.place == "surface":
         # sigma_zz = -p holds by construction there; the pressure says it all.
-        return (
-            *(("pressure",) if line.body == FLAT else ()),
-            *("sigma_xx", "sigma_yy"),
-            *(("sigma_xz",) if problem.friction else ()),
-        )
+        pressure = ("pressure",) if line.body == FLAT else ()
+        return (*pressure, "sigma_xx", "sigma_yy", *sheared)
     if line.place == "axis":
-        return ("sigma_xx", "sigma_zz", *(("sigma_xz",) if problem.friction else ()))
+        return ("sigma_xx", "sigma_zz", *sheared)
     return tuple(IN_PLANE)

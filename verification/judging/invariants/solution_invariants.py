@@ -11,7 +11,6 @@ from verification.judging.invariants import (
     indenter_gap,
     influence_error,
     mirror_symmetry,
-    plane_consistency,
 )
 from verification.problem.coated_contact import BALL, CoatedContact, NotClaimed, Solution
 from verification.problem.either_body import on_body
@@ -50,8 +49,6 @@ def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[t
     yield from _of_body(*subject)
     if source == "semianalytic":
         yield "influence coefficients", partial(influence_error.influence_coefficients, *subject)
-    if hasattr(solution, "stress_plane"):
-        yield "planes", partial(plane_consistency.planes, *subject)
     if problem.ball is not None:
         of_ball = on_body(solution, BALL), source, problem.seen_from(BALL)
         yield from ((f"{ON_BALL}{name}", law) for name, law in _of_body(*of_ball))
