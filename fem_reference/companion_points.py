@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from .axisymmetric import Discretisation
 from .location import LocatedPoints, Uncached
@@ -72,14 +73,13 @@ def samples(vertices: np.ndarray) -> np.ndarray:
     return (vertices[:-1, None] + np.diff(vertices)[:, None] * t).ravel()
 
 
-def largest_around(values: np.ndarray, vertices: int) -> np.ndarray:
-    """The largest value in the cells around each of the ``vertices``, by the shares of ``REACH``.
+def largest_around(values: np.ndarray) -> np.ndarray:
+    """The largest value in the cells around each vertex, by the shares of ``REACH``.
 
     values : (..., n) at ``samples``.  Returns shape (..., vertices).
     """
     worst = values.reshape(*values.shape[:-1], -1, _CELL_SAMPLES).max(axis=-1)
-    side = ((0, 0),) * (worst.ndim - 1)
-    padded = np.pad(worst, (*side, (len(REACH), len(REACH))))
-    both = [(len(REACH) - 1 - ring, len(REACH) + ring) for ring in range(len(REACH))]
-    rings = [np.maximum(*(padded[..., k : k + vertices] for k in cells)) for cells in both]
-    return np.max([share * ring for share, ring in zip(REACH, rings, strict=True)], axis=0)
+    shares = np.array([*REACH[::-1], *REACH])  # of the cells before and behind a vertex
+    beyond = (*((0, 0),) * (worst.ndim - 1), (len(REACH), len(REACH)))
+    around = sliding_window_view(np.pad(worst, beyond), len(shares), axis=-1)
+    return np.asarray((shares * around).max(axis=-1))

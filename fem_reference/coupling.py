@@ -38,15 +38,6 @@ class Coupling:
         if one.shape != two.shape or not np.allclose(one, two, rtol=1e-12, atol=0):
             raise ValueError("the meshes of flat and ball have different nodes on the surface")
 
-    def _numbers(self) -> np.ndarray:
-        """Unknown of the pair for each unknown of the ball, (2 N,): on the contact that of the flat."""
-        flat, ball = self.flat, self.ball
-        own = np.ones(2 * ball.N, dtype=bool)
-        own[ball.N + ball.contact] = False
-        numbers = 2 * flat.N - 1 + np.cumsum(own)
-        numbers[ball.N + ball.contact] = flat.N + flat.contact
-        return numbers
-
     def solve(
         self, solids: Solids, jump: np.ndarray, far: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, Constrained]:
@@ -57,8 +48,14 @@ class Coupling:
         Returns the field vectors (2 N, columns) of flat and ball, the nodal forces (nodes, columns) on the
         flat, and how they were found.
         """
-        flat, ball, numbers = self.flat, self.ball, self._numbers()
-        n_flat, n_ball, n = 2 * flat.N, 2 * ball.N, int(numbers.max()) + 1
+        flat, ball = self.flat, self.ball
+        n_flat, n_ball = 2 * flat.N, 2 * ball.N
+        # unknown of the pair for each of the ball: on the contact that of the flat
+        numbers = np.ones(n_ball, dtype=int)
+        numbers[ball.N + ball.contact] = 0
+        n = n_flat + numbers.sum()
+        numbers = n_flat - 1 + np.cumsum(numbers)
+        numbers[ball.N + ball.contact] = flat.N + flat.contact
         sign = np.repeat([1.0, -1.0], ball.N)
         T = sp.csc_matrix((sign, (np.arange(n_ball), numbers)), shape=(n_ball, n))
         K_flat, K_ball = (d.skeleton(of.materials, 0) for d, of in zip((flat, ball), solids, strict=True))

@@ -86,7 +86,7 @@ class PressureEstimate:
     def _at_vertices(self) -> np.ndarray:
         r = samples(self.vertices)
         difference = self.pressure(r) - self.companion(self.stretch * r)
-        return largest_around(self.factor * np.abs(difference), self.vertices.size)
+        return largest_around(self.factor * np.abs(difference))
 
     def __call__(self, r: np.ndarray) -> np.ndarray:
         p = self.pressure(r)
@@ -163,7 +163,7 @@ class StressEstimate(Uncached):
     def _planes(self) -> dict[tuple[float, int], tuple[np.ndarray, np.ndarray]]:
         """Vertices and estimates on the surface and on both sides of each interface, by (depth, layer)."""
         found = {
-            key: (vertices, largest_around(self._error(points, key[1])[:6], vertices.size))
+            key: (vertices, largest_around(self._error(points, key[1])[:6]))
             for key, (vertices, points) in self.points.planes.items()
         }
         for upper, depth in enumerate(self.field.discretisation.mesh.depths):
@@ -255,7 +255,7 @@ def contact_estimates(
         found.append(estimates(state, coarse, units, changes, load_residual, abs(edge), size, states))
     truncation = sum(state.truncation(0)[0] for state in states) / final.approach
     stiffness = (
-        _functional_factor(final.discretisation.order, size) * abs(final.stiffness - companion.stiffness)
+        _factors(final.discretisation.order, size)[1] * abs(final.stiffness - companion.stiffness)
         + (load_residual + truncation) * final.stiffness
     )
     return tuple(found), float(stiffness * units.load / units.displacement)
@@ -288,8 +288,9 @@ def estimates(
     # pressure with its radius is exact.
     far_radius, far_pressure = np.array([a, largest]) * (curvature if state.normal.root_at_edge else 0.0)
     central = sum(body.central_displacement for body in bodies)
-    displacement, factor = units.displacement, _factor(d.order, size)
-    pointwise, functional = factor * _coarseness(size), _functional_factor(d.order, size)
+    displacement = units.displacement
+    factor, functional = _factors(d.order, size)
+    pointwise = factor * _coarseness(size)
     balance = load_residual / 2 * a  # a ~ W^(1/n), n at least 2 on any layers
     # What the whole mesh misses of a contact's compliance shows in the approach, changes the pressure, and as
     # such a share of the stress everywhere. A given pressure is exact: the error of the displacement under it
@@ -335,19 +336,16 @@ def estimates(
     return Estimates(scalars, pressure, normal, None, companion, float(pollution))
 
 
-def _factor(order: int, size: float) -> float:
-    """Uncertainty of a pressure over the difference from the companion."""
-    return SAFETY / (COMPANION**order - 1) * _coarseness(size)
+def _factors(order: int, size: float) -> tuple[float, float]:
+    """Uncertainty over the difference from the companion: of a pressure, of approach and stiffness.
 
-
-def _functional_factor(order: int, size: float) -> float:
-    """The same for contact radius, approach and stiffness.
-
-    Functionals of the solution converge with up to twice the order (G. Strang and G. J. Fix, An Analysis of
-    the Finite Element Method, 1973, section 3.4); all but one is relied on, of triangles too large for their
-    order nothing beyond it.
+    These are functionals of the solution, which converge with up to twice the order (G. Strang and G. J. Fix,
+    An Analysis of the Finite Element Method, 1973, section 3.4); all but one is relied on, of triangles too
+    large for their order nothing beyond it.
     """
-    return _factor(2 * order - 1 if size <= _ASYMPTOTIC_SIZE else order, size)
+    twice = 2 * order - 1 if size <= _ASYMPTOTIC_SIZE else order
+    factor, functional = (SAFETY / (COMPANION**n - 1) * _coarseness(size) for n in (order, twice))
+    return factor, functional
 
 
 def _coarseness(size: float) -> float:

@@ -7,6 +7,7 @@ contact radius of every level.
 
 import math
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact, solve_at_radius
@@ -37,6 +38,14 @@ COMPANION = 1.4  # size of the companion over that of the final mesh
 
 class NotConverged(Exception):
     """The solver did not reach its tolerance; the message states what was reached and what to try."""
+
+
+class Level(NamedTuple):
+    """A mesh level and the |log W/load| allowed on it."""
+
+    name: str
+    grading: Grading
+    tolerance: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,68 +80,54 @@ def solve_levels(
     curvature : of the gap, as in `contact.undeformed_gap`
     Raises NotConverged when the load is not reached on one of the levels.
     """
-    levels = [("coarse", _COARSE, 1e-3)]
+    levels = [Level("coarse", _COARSE, 1e-3)]
     if with_companion:
-        levels.append(("companion", companion_grading(size), max(tolerance, _OF_COMPANION)))
-    levels.append(("final", final_grading(size), tolerance))
+        levels.append(Level("companion", companion_grading(size), max(tolerance, _OF_COMPANION)))
+    levels.append(Level("final", final_grading(size), tolerance))
     a = first_radius(solids, load)
     history: list[tuple[str, float, float]] = []
     found: dict[str, FixedRadiusContact] = {}
-    for name, grading, allowed in levels:
-        contact, solves = find_contact_radius(
-            solids, load, grading, a, order, curvature, max_iterations, allowed
-        )
-        history += [(name, *solve) for solve in solves]
-        a, W = solves[-1]
-        if not _balanced(W, load, allowed):
-            raise NotConverged(
-                f"the contact radius did not converge on the {name} mesh: after {len(solves)} solves, at "
-                f"{a:.4g} a_h, the load is {W / load:.6g} of the required one; raise max_iterations, or "
-                "check the thicknesses and the ratio of the moduli"
-            )
-        found[name] = contact
+    for level in levels:
+        contact, solves = find_contact_radius(solids, load, level, a, order, curvature, max_iterations)
+        history += solves
+        found[level.name] = contact
         a = contact.radius_at(load) + contact.edge_displacement  # which is smaller on the next
     return ContactLevels(found["final"].at_load(load), found.get("companion"), tuple(history))
 
 
 def find_contact_radius(
-    solids: Solids,
-    load: float,
-    grading: Grading,
-    a: float,
-    order: int,
-    curvature: float,
-    max_iterations: int,
-    tolerance: float,
-) -> tuple[FixedRadiusContact, list[tuple[float, float]]]:
-    """Find the contact radius with |log W/load| <= ``tolerance`` from ``a``, on meshes of one ``grading``.
+    solids: Solids, load: float, level: Level, a: float, order: int, curvature: float, max_iterations: int
+) -> tuple[FixedRadiusContact, list[tuple[str, float, float]]]:
+    """Find the contact radius of a ``load``, within the tolerance of the ``level``, from ``a``.
 
     The load of a rigid paraboloid rises with the contact radius, W ~ a^3 on a homogeneous solid, so log W is
     nearly linear in log a and Newton's method with the slope d log W / d log a, which every solution gives to
     some thousandths (``contact``), converges in a few steps. Small steps stretch the meshes, large ones make
     new ones.
 
-    Returns the last contact and (contact radius, load) of every solve; after ``max_iterations``, or where the
-    load is not a positive number, the tolerance is not reached.
+    Returns the last contact and (level, contact radius, load) of every solve. Raises NotConverged after
+    ``max_iterations``, or where the load is not a positive number.
     """
-    meshes = meshes_at(solids, grading, a)
-    solves: list[tuple[float, float]] = []
+    meshes = meshes_at(solids, level.grading, a)
+    solves: list[tuple[str, float, float]] = []
     while True:
         factor = a / meshes[0].contact_radius
         flat, *others = (Discretisation(mesh.stretched(factor), order) for mesh in meshes)
         ball = (solids[1], Coupling(flat, others[0])) if others else None
         contact = solve_at_radius(solids[0], flat, ball, curvature)
-        solves.append((a, contact.load))
-        positive = contact.load > 0 and math.isfinite(contact.load)
-        if not positive or _balanced(contact.load, load, tolerance) or len(solves) >= max_iterations:
+        solves.append((level.name, a, contact.load))
+        positive = 0 < contact.load < math.inf  # NaN is not
+        if positive and abs(math.log(load / contact.load)) <= level.tolerance:
             return contact, solves
+        if not positive or len(solves) >= max_iterations:
+            raise NotConverged(
+                f"the contact radius did not converge on the {level.name} mesh: after {len(solves)} solves, "
+                f"at {a:.4g} a_h, the load is {contact.load / load:.6g} of the required one; raise "
+                "max_iterations, or check the thicknesses and the ratio of the moduli"
+            )
         a = contact.radius_at(load)
         if not 1 / _STRETCH < a / meshes[0].contact_radius < _STRETCH:
-            meshes = meshes_at(solids, grading, a)
-
-
-def _balanced(W: float, load: float, tolerance: float) -> bool:
-    return W > 0 and abs(math.log(load / W)) <= tolerance
+            meshes = meshes_at(solids, level.grading, a)
 
 
 def final_grading(size: float) -> Grading:

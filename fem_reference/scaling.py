@@ -1,12 +1,14 @@
-"""The problem in scaled units: one length, one pressure, the modulus of the substrate."""
+"""The problem in scaled units: one length, one pressure, the modulus of the substrate.
+
+Far from a concentrated force on the surface the substrate alone counts. Its displacement there is that of
+Boussinesq (1885) and Cerruti (1882); K. L. Johnson, Contact Mechanics, 1985, (3.19) and (3.75).
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from .far_field import boussinesq, cerruti
-
-__all__ = ["LayeredSolid", "Units", "first_radius"]
+__all__ = ["LayeredSolid", "Units", "boussinesq", "cerruti", "first_radius"]
 
 Coatings = tuple[tuple[float, float, float], ...]
 
@@ -82,3 +84,31 @@ def first_radius(solids: tuple[LayeredSolid, ...], load: float) -> float:
             compliance += sum(s * (1 - nu**2) / E for s, (E, nu) in zip(share, solid.materials, strict=True))
         a = (0.75 * load * compliance) ** (1 / 3)
     return float(a)
+
+
+def boussinesq(r: np.ndarray, z: np.ndarray, E: float, nu: float) -> np.ndarray:
+    """(u_r, u_z) of a unit force in +z at the origin, shape (2,) + points. Johnson (3.19).
+
+    u_r = (1+nu)/(2 pi E) [r z/rho^3 - (1-2 nu) r/(rho (rho+z))]
+    u_z = (1+nu)/(2 pi E) [z^2/rho^3 + 2 (1-nu)/rho]
+    """
+    rho = np.hypot(r, z)
+    u_r = r * z / rho**3 - (1 - 2 * nu) * r / (rho * (rho + z))
+    u_z = z**2 / rho**3 + 2 * (1 - nu) / rho
+    return (1 + nu) / (2 * np.pi * E) * np.stack([u_r, u_z])
+
+
+def cerruti(r: np.ndarray, z: np.ndarray, E: float, nu: float) -> np.ndarray:
+    """Amplitudes (u_r, u_theta, u_z) of a unit force in +x at the origin. Johnson (3.75).
+
+    u_r = U cos, u_theta = V sin, u_z = Z cos, with c = (1+nu)/(2 pi E):
+    U = c [1/rho + r^2/rho^3 + (1-2 nu) (1/(rho+z) - r^2/(rho (rho+z)^2))]
+    V = -c [1/rho + (1-2 nu)/(rho+z)]
+    Z = c [r z/rho^3 + (1-2 nu) r/(rho (rho+z))]
+    """
+    rho = np.hypot(r, z)
+    s = rho + z
+    U = 1 / rho + r**2 / rho**3 + (1 - 2 * nu) * (1 / s - r**2 / (rho * s**2))
+    V = -(1 / rho + (1 - 2 * nu) / s)
+    Z = r * z / rho**3 + (1 - 2 * nu) * r / (rho * s)
+    return (1 + nu) / (2 * np.pi * E) * np.stack([U, V, Z])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem_reference.far_field import boussinesq, cerruti
+from fem_reference.scaling import boussinesq, cerruti
 
 E, NU = 3.0, 0.2
 X = np.random.default_rng(4).uniform([[-1], [-1], [0.5]], [[1], [1], [2.5]], (3, 6))
