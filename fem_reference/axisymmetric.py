@@ -96,7 +96,7 @@ class Discretisation(Uncached):
 
     @cached_property
     def locator(self) -> Locator:
-        return Locator(self.mesh, self.triangulation.t)
+        return Locator(self.mesh, self.basis)
 
     @property
     def N(self) -> int:
@@ -115,8 +115,7 @@ class Discretisation(Uncached):
     @cached_property
     def contact_vertices(self) -> np.ndarray:
         """Increasing radii of the surface vertices from the axis to the contact edge."""
-        r, z = self.mesh.points
-        return np.sort(r[(z == 0) & (r <= self.mesh.contact_radius)])
+        return self.locations[0, self.contact][:: self.order]
 
     @cached_property
     def surface(self) -> np.ndarray:

@@ -79,15 +79,11 @@ class Multiplier:
 
 @dataclass(frozen=True, eq=False)
 class Ball:
-    """An elastic ball in contact: its layers, its displacement with z into it, its coupling to the flat."""
+    """An elastic ball in contact: its layers, its elements, its displacement with z into it."""
 
     solid: LayeredSolid
-    coupling: Coupling
+    discretisation: Discretisation
     fields: np.ndarray
-
-    @property
-    def discretisation(self) -> Discretisation:
-        return self.coupling.ball
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,12 +122,14 @@ class FixedRadiusContact:
 
         The difference of the loads counts as a force out of balance.
         """
-        factor, p = self.radius_at(load) / self.contact_radius, self.pressure
-        bodies = [self.discretisation] + ([self.ball.discretisation] if self.ball else [])
-        flat, *others = (Discretisation(d.mesh.stretched(factor), d.order) for d in bodies)
-        ball = self.ball
+        factor, p, ball = self.radius_at(load) / self.contact_radius, self.pressure, self.ball
+
+        def moved(d: Discretisation) -> Discretisation:
+            return Discretisation(d.mesh.stretched(factor), d.order)
+
         if ball:
-            ball = Ball(ball.solid, Coupling(flat, others[0]), ball.fields * factor**2)
+            ball = Ball(ball.solid, moved(ball.discretisation), ball.fields * factor**2)
+        flat = moved(self.discretisation)
         return replace(
             self,
             discretisation=flat,
@@ -210,7 +208,7 @@ def solve_at_radius(
         stiffness=float(stiffness),
         growth=float(a / W * stiffness * K / (2 * k)),
         residual=float(2 * np.pi * np.abs(solved.residual @ combine).max() / abs(W)),
-        ball=None if ball is None else Ball(*ball, of_ball @ combine),
+        ball=None if ball is None else Ball(ball[0], ball[1].ball, of_ball @ combine),
         curvature=curvature,
     )
 
@@ -267,8 +265,4 @@ def _even_at_the_axis(nodes: np.ndarray, order: int) -> sp.csr_matrix:
     s = nodes[: order + 1] / nodes[order]
     powers = 2 * np.arange(kept.size)
     first = s[:, None] ** powers @ np.linalg.inv(s[kept, None] ** powers)
-    rest = nodes.size - s.size
-    T = sp.lil_matrix((nodes.size, kept.size + rest))
-    T[: s.size, : kept.size] = first
-    T[np.arange(rest) + s.size, np.arange(rest) + kept.size] = 1.0
-    return T.tocsr()
+    return sp.block_diag([first, sp.eye(nodes.size - s.size)], format="csr")

@@ -33,8 +33,8 @@ from functools import cached_property
 import numpy as np
 
 from .companion_points import REACH, ComparisonPoints, Pair, largest_around, samples
-from .contact import peak
-from .levels import COMPANION, ContactLevels
+from .contact import FixedRadiusContact, peak
+from .levels import COMPANION
 from .location import LocatedPoints, Uncached
 from .recovery import HarmonicField
 from .scaling import Units
@@ -231,15 +231,17 @@ class Estimates:
 
 
 def contact_estimates(
-    levels: ContactLevels, states: tuple[ElasticState, ...], units: Units, load: float, size: float
+    final: FixedRadiusContact,
+    companion: FixedRadiusContact,
+    states: tuple[ElasticState, ...],
+    units: Units,
+    load: float,
+    size: float,
 ) -> tuple[tuple[Estimates, ...], float]:
-    """Uncertainty of each of the frictionless contact ``states`` of the final level, and of its stiffness.
+    """Uncertainty of each of the ``states`` of the ``final`` frictionless contact, and of its stiffness.
 
-    states : of the flat, then of an elastic ball.  size : of the final mesh.  load : in scaled ``units``, as
-    ``levels``.
+    states : of the flat, then of an elastic ball.  load : in scaled ``units``.  size : of the final mesh
     """
-    final, companion = levels.final, levels.companion
-    assert companion is not None
     # contact radius and approach of each if it had exactly the load
     (a, approach), (other_a, other_approach) = (
         (one.radius_at(load), one.approach + (load - one.load) / one.stiffness) for one in (final, companion)

@@ -6,7 +6,7 @@ contact radius of every level.
 """
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 from .axisymmetric import Discretisation
@@ -17,7 +17,6 @@ from .scaling import LayeredSolid, first_radius
 
 __all__ = [
     "COMPANION",
-    "ContactLevels",
     "NotConverged",
     "companion_grading",
     "final_grading",
@@ -48,19 +47,8 @@ class Level(NamedTuple):
     tolerance: float
 
 
-@dataclass(frozen=True, eq=False)
-class ContactLevels:
-    """Contacts on the last levels, and (level, a, W) of every solve; scaled units.
-
-    companion : None without an error estimate
-    """
-
-    final: FixedRadiusContact
-    companion: FixedRadiusContact | None
-    history: tuple[tuple[str, float, float], ...]
-
-
 Solids = tuple[LayeredSolid, ...]  # the flat, then an elastic ball
+History = list[tuple[str, float, float]]  # level, contact radius, load of every solve
 
 
 def solve_levels(
@@ -73,8 +61,10 @@ def solve_levels(
     tolerance: float,
     with_companion: bool,
     curvature: float = 0.0,
-) -> ContactLevels:
+) -> tuple[FixedRadiusContact, FixedRadiusContact | None, History]:
     """Find the contact radius at ``load``, each level starting from the result of the one before.
+
+    Returns the contact on the final mesh, that on the companion if wanted, and every solve.
 
     order, size, tolerance : of the final level.  max_iterations : contact solves allowed on each level
     curvature : of the gap, as in `contact.undeformed_gap`
@@ -85,19 +75,19 @@ def solve_levels(
         levels.append(Level("companion", companion_grading(size), max(tolerance, _OF_COMPANION)))
     levels.append(Level("final", final_grading(size), tolerance))
     a = first_radius(solids, load)
-    history: list[tuple[str, float, float]] = []
+    history: History = []
     found: dict[str, FixedRadiusContact] = {}
     for level in levels:
         contact, solves = find_contact_radius(solids, load, level, a, order, curvature, max_iterations)
         history += solves
         found[level.name] = contact
         a = contact.radius_at(load) + contact.edge_displacement  # which is smaller on the next
-    return ContactLevels(found["final"].at_load(load), found.get("companion"), tuple(history))
+    return found["final"].at_load(load), found.get("companion"), history
 
 
 def find_contact_radius(
     solids: Solids, load: float, level: Level, a: float, order: int, curvature: float, max_iterations: int
-) -> tuple[FixedRadiusContact, list[tuple[str, float, float]]]:
+) -> tuple[FixedRadiusContact, History]:
     """Find the contact radius of a ``load``, within the tolerance of the ``level``, from ``a``.
 
     The load of a rigid paraboloid rises with the contact radius, W ~ a^3 on a homogeneous solid, so log W is
@@ -105,11 +95,11 @@ def find_contact_radius(
     some thousandths (``contact``), converges in a few steps. Small steps stretch the meshes, large ones make
     new ones.
 
-    Returns the last contact and (level, contact radius, load) of every solve. Raises NotConverged after
+    Returns the last contact and every solve. Raises NotConverged after
     ``max_iterations``, or where the load is not a positive number.
     """
     meshes = meshes_at(solids, level.grading, a)
-    solves: list[tuple[str, float, float]] = []
+    solves: History = []
     while True:
         factor = a / meshes[0].contact_radius
         flat, *others = (Discretisation(mesh.stretched(factor), order) for mesh in meshes)

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 from scipy.spatial import cKDTree
+from skfem import Basis
 
 from .mesh import MeridianMesh
 
@@ -46,6 +47,16 @@ class LocatedPoints:
     X: np.ndarray
 
     @cached_property
+    def shapes(self) -> np.ndarray:
+        """Shape functions of the triangles at the points, with derivatives by r and z, (3, functions, n)."""
+        basis = self.locator.basis
+        values = np.empty((3, basis.Nbfun, self.r.size))
+        for i in range(basis.Nbfun):
+            (phi,) = basis.elem.gbasis(basis.mapping, self.X[:, :, None], i, tind=self.cells)
+            values[:, i] = np.asarray(phi)[:, 0], phi.grad[0][:, 0], phi.grad[1][:, 0]
+        return values
+
+    @cached_property
     def interfaces(self) -> "list[tuple[int, np.ndarray, list[LocatedPoints]]]":
         """Of each interface with points: the layer above, the points' numbers, the points on either side."""
         found = []
@@ -66,10 +77,10 @@ class LocatedPoints:
 
 @dataclass(frozen=True, eq=False)
 class Locator:
-    """Search for triangles of ``mesh``, whose corners are numbered ``t`` (3, triangles)."""
+    """Search for triangles of ``mesh``, as numbered by the ``basis`` on it."""
 
     mesh: MeridianMesh
-    t: np.ndarray
+    basis: Basis
 
     @cached_property
     def _trees(self) -> list[tuple[np.ndarray, cKDTree]]:
@@ -90,7 +101,7 @@ class Locator:
 
     def triangles(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Triangle of each point inside its layer, and the point's reference coordinates (2, n)."""
-        mesh, t = self.mesh, self.t
+        mesh, t = self.mesh, self.basis.mesh.t
         cells = np.zeros(r.shape, dtype=int)
         for k, (members, tree) in enumerate(self._trees):
             mine = np.flatnonzero(layer == k)

@@ -22,7 +22,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from skfem import Basis
 
 from .axisymmetric import Discretisation, elasticity, strain_operator
 from .location import LocatedPoints
@@ -49,21 +48,6 @@ def edge_distances(mesh: MeridianMesh, farther: float = 1.0) -> np.ndarray:
     thickness = (mesh.length / mesh.contact_radius) ** 2  # of the thinnest film on top, over a
     end = max(min(farther * largest, 0.05 * thickness / EDGE_SIZE), 5 * smallest)
     return np.geomspace(max(smallest, end * smallest / largest), end, 32)
-
-
-def _shapes(basis: Basis, at: LocatedPoints) -> np.ndarray:
-    """Shape functions of the triangles at their points, with derivatives by r and z, (3, functions, n).
-
-    Kept with the points, at which many harmonics may be evaluated.
-    """
-    known = at.__dict__.get("shapes")
-    if known is None:
-        known = np.empty((3, basis.Nbfun, at.r.size))
-        for i in range(basis.Nbfun):
-            (phi,) = basis.elem.gbasis(basis.mapping, at.X[:, :, None], i, tind=at.cells)
-            known[:, i] = np.asarray(phi)[:, 0], phi.grad[0][:, 0], phi.grad[1][:, 0]
-        at.__dict__["shapes"] = known
-    return known
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,9 +108,9 @@ class HarmonicField:
 
     def _fields_and_strains(self, at: LocatedPoints) -> tuple[np.ndarray, np.ndarray]:
         """Fields (fields, n) and strains (strains, n)."""
-        d, basis = self.discretisation, self.discretisation.basis
-        u = self.fields.reshape(-1, d.N)[:, np.asarray(basis.element_dofs)[:, at.cells]]
-        values, d_r, d_z = np.einsum("fin,kin->kfn", u, _shapes(basis, at))
+        d = self.discretisation
+        u = self.fields.reshape(-1, d.N)[:, np.asarray(d.basis.element_dofs)[:, at.cells]]
+        values, d_r, d_z = np.einsum("fin,kin->kfn", u, at.shapes)
         A_r, A_z, A_0 = strain_operator(self.harmonic)
         return values, A_r @ d_r + A_z @ d_z + A_0 @ (values / at.r)
 

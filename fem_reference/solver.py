@@ -18,7 +18,7 @@ from .levels import NotConverged, companion_grading, final_grading, meshes_at, s
 from .loading import resultant, solve_traction
 from .mesh import Grading
 from .recovery import HarmonicField
-from .scaling import LayeredSolid, Units
+from .scaling import Coatings, LayeredSolid, Units
 from .solution import BodyFields, Diagnostics, Solution
 from .state import ElasticState
 from .validation import (
@@ -33,7 +33,6 @@ from .validation import (
 
 __all__ = ["QUALITY", "solve", "solve_prescribed"]
 
-Coatings = tuple[tuple[float, float, float], ...]
 Ball = tuple[float, float, Coatings]
 
 # Triangle size over its distance from the contact edge.
@@ -105,7 +104,7 @@ def solve(
         check_proportions(solids[1].thicknesses, "a_h", "the ball's ")
     target = load / unit.load
 
-    levels = solve_levels(
+    final, companion, history = solve_levels(
         solids,
         target,
         order=order,
@@ -115,17 +114,17 @@ def solve(
         with_companion=estimate_uncertainty,
         curvature=a_h / radius if gap == "sphere" else 0.0,
     )
-    final, d = levels.final, levels.final.discretisation
+    d = final.discretisation
     check_radius(final.contact_radius * a_h, radius)
-    penetration, tension = _checked_complementarity(levels.final)
+    penetration, tension = _checked_complementarity(final)
     states = tuple(
         ElasticState.of_contact(solid, final, body)
         for solid, body in zip(solids, (None, final.ball), strict=False)
     )
     found: tuple[Estimates | None, ...] = (None,) * len(states)
     stiffness_error = None
-    if estimate_uncertainty:
-        found, stiffness_error = contact_estimates(levels, states, unit, target, size)
+    if companion:
+        found, stiffness_error = contact_estimates(final, companion, states, unit, target, size)
     frictionless = Solution(
         contact_radius=final.contact_radius * unit.length,
         approach=final.approach * unit.displacement,
@@ -133,7 +132,7 @@ def solve(
         surface_nodes=_surface_nodes(d) * unit.length,
         uncertainty=None if found[0] is None else found[0].scalars,
         diagnostics=Diagnostics(
-            iterations=len(levels.history),
+            iterations=len(history),
             dofs=sum(2 * state.discretisation.N for state in states),
             triangles=sum(int(state.mesh.layer.size) for state in states),
             order=order,
@@ -142,7 +141,7 @@ def solve(
             residual_load=abs(final.load / target - 1),
             residual_equilibrium=final.residual,
             seconds=time.perf_counter() - started,
-            history=tuple((name, a * a_h, W * unit.load) for name, a, W in levels.history),
+            history=tuple((name, a * a_h, W * unit.load) for name, a, W in history),
         ),
         bodies=tuple(BodyFields(*each) for each in zip(states, found, strict=True)),
         units=unit,

@@ -76,5 +76,4 @@ class ElasticState:
     def central_displacement(self) -> float:
         """u_z at the origin."""
         d = self.discretisation
-        origin = np.flatnonzero((d.locations[0] == 0) & (d.locations[1] == 0))
-        return float(self.normal.fields[d.N + origin[0]])
+        return float(self.normal.fields[d.N + d.surface[0]])
