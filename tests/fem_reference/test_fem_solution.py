@@ -11,7 +11,7 @@ from fem_reference import solve, solve_prescribed
 from fem_reference.companion_points import samples
 from fem_reference.contact import solve_at_radius
 from fem_reference.estimate import SAFETY, contact_estimates, estimates
-from fem_reference.levels import COMPANION, ContactLevels, companion_grading, final_grading
+from fem_reference.levels import COMPANION, companion_grading, final_grading
 from fem_reference.state import ElasticState
 
 R, W, E, NU = 10e-3, 20.0, 210e9, 0.3
@@ -132,7 +132,7 @@ def estimated(companion, residual=0.0):
     """Budget and uncertainty of the stiffness if ``companion`` were the contact on the coarser mesh."""
     one, s = replace(contact(), residual=residual), solved("sphere")
     states = (ElasticState.of_contact(s.state.solid, one),)
-    (found,), stiffness = contact_estimates(ContactLevels(one, companion, ()), states, s.units, one.load, 0.5)
+    (found,), stiffness = contact_estimates(one, companion, states, s.units, one.load, 0.5)
     return budget(found), stiffness
 
 
