@@ -37,8 +37,6 @@ from skfem import (
 from .location import Locator, Uncached
 from .mesh import MeridianMesh
 
-__all__ = ["ELEMENTS", "Discretisation", "Skeleton", "elasticity", "strain_operator"]
-
 _AT_ONCE = 512  # triangles whose matrices are made at once: more take longer, for fresh memory
 ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
@@ -234,7 +232,8 @@ class Skeleton:
 
         K_oo - K_oi K_ii^-1 K_io,     u_i = -K_ii^-1 K_io u_o
 
-    for loads on the sides alone. E. L. Wilson, Int. J. Numer. Meth. Engng 8 (1974) 198-203.
+    for loads on the sides alone. E. L. Wilson, Int. J. Numer. Meth. Engng 8 (1974) 198-203. By hand:
+    scikit-fem condenses given values, not unknowns of single triangles.
 
     matrix : (n, n), whose rows and columns i are empty
     inner, outer : numbers (m, k) of the unknowns i and (m, l) of o by triangle.  extension : (m, k, l)

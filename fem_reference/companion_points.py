@@ -12,8 +12,6 @@ from numpy.lib.stride_tricks import sliding_window_view
 from .axisymmetric import Discretisation
 from .location import LocatedPoints, Uncached
 
-__all__ = ["REACH", "ComparisonPoints", "Pair", "largest_around", "samples"]
-
 # Shares of the largest difference in rings of triangles, or cells of a line, by their distance from a point.
 REACH = (1.0, 1.0, 0.5)
 # corners, middles and centre of the reference triangle: the hoop strain is worst on the axis itself

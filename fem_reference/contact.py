@@ -40,8 +40,6 @@ from .mesh import EDGE_SIZE, MeridianMesh
 from .recovery import edge_distances
 from .scaling import LayeredSolid
 
-__all__ = ["Ball", "FixedRadiusContact", "Multiplier", "complementarity", "peak", "solve_at_radius"]
-
 # The growth of the contact is fitted this much farther from the edge than stresses: where the displacement of
 # the edge by its last triangles does not count. It is good to 1e-4 on the companion, in place of 5e-3.
 _FARTHER = 100.0

@@ -18,8 +18,6 @@ from .axisymmetric import Discretisation
 from .linear_system import Constrained, constrained_solve
 from .scaling import LayeredSolid
 
-__all__ = ["Coupling"]
-
 Solids = tuple[LayeredSolid, LayeredSolid]
 
 

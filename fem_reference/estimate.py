@@ -40,8 +40,6 @@ from .recovery import HarmonicField
 from .scaling import Units
 from .state import ElasticState
 
-__all__ = ["Estimates", "PressureEstimate", "StressEstimate", "Uncertainty", "contact_estimates", "estimates"]
-
 # Roache's factor of safety for two meshes; `coatcheck alarms` counts how often it is too small.
 SAFETY = 3.0
 # Triangles above this size do not reach the order of the elements. The factor then grows with the size, that

@@ -13,8 +13,6 @@ from contextlib import contextmanager
 from types import ModuleType
 from typing import Any
 
-__all__ = ["session"]
-
 # one instance of gmsh per process: one thread at a time
 _LOCK = threading.Lock()
 

@@ -15,16 +15,6 @@ from .coupling import Coupling
 from .mesh import EDGE_SIZE, Grading, MeridianMesh, meridian_mesh
 from .scaling import LayeredSolid, first_radius
 
-__all__ = [
-    "COMPANION",
-    "NotConverged",
-    "companion_grading",
-    "final_grading",
-    "find_contact_radius",
-    "meshes_at",
-    "solve_levels",
-]
-
 # One row of triangles in a coating: the radius is good to 1e-5, from where the companion takes one solve.
 _COARSE = Grading.of(0.5, rows=1.0)
 _OF_COMPANION = 1e-5  # tolerance of its load, which the estimate takes into account: one solve instead of two

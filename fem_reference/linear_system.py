@@ -16,8 +16,6 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 from skfem import condense
 
-__all__ = ["Constrained", "Factor", "constrained_solve", "factorised"]
-
 # Solution for a right-hand side (n,) or several in columns (n, columns).
 Factor = Callable[[np.ndarray], np.ndarray]
 

@@ -15,8 +15,6 @@ from .axisymmetric import Discretisation
 from .linear_system import Constrained, constrained_solve
 from .scaling import LayeredSolid
 
-__all__ = ["resultant", "solve_fields", "solve_traction"]
-
 Traction = Callable[[np.ndarray], np.ndarray]
 
 

@@ -14,8 +14,6 @@ from skfem import Basis
 
 from .mesh import MeridianMesh
 
-__all__ = ["LocatedPoints", "Locator", "SolidPoints", "Uncached", "solid_points"]
-
 # Triangles whose centroids are nearest: most points lie within one of a few, those on edges need more.
 _NEAREST, _NEIGHBOURS = 4, 12
 # Smallest radius over the contact radius: u/r on the axis is the limit from outside, exact to its square.

@@ -20,8 +20,6 @@ import numpy as np
 
 from .gmsh_session import session
 
-__all__ = ["EDGE_SIZE", "Grading", "MeridianMesh", "meridian_mesh"]
-
 EDGE_SIZE = 1e-7  # smallest triangle, at the contact edge, over the contact radius
 # Size of a triangle in the fan over edge_rate: this power of its distance from the edge. What the innermost
 # triangles miss counts as the root of the distance.

@@ -27,8 +27,6 @@ from .axisymmetric import Discretisation, elasticity, strain_operator
 from .location import LocatedPoints
 from .mesh import EDGE_SIZE, MeridianMesh
 
-__all__ = ["EDGE_SERIES", "HarmonicField", "edge_distances"]
-
 # Distances from the edge over EDGE_SIZE times the radius: the series replaces the strains below the first
 # and is fitted from there to the second.
 EDGE_SERIES = 20.0, 5000.0

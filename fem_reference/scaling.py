@@ -8,8 +8,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-__all__ = ["LayeredSolid", "Units", "boussinesq", "cerruti", "first_radius"]
-
 Coatings = tuple[tuple[float, float, float], ...]
 
 

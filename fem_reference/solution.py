@@ -13,8 +13,6 @@ from .scaling import Units
 from .state import ElasticState
 from .validation import check_friction
 
-__all__ = ["BodyFields", "Diagnostics", "Solution", "cartesian", "tensor"]
-
 
 @dataclass(frozen=True, kw_only=True)
 class Diagnostics:

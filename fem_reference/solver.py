@@ -31,8 +31,6 @@ from .validation import (
     prescribed_pressure,
 )
 
-__all__ = ["QUALITY", "solve", "solve_prescribed"]
-
 Ball = tuple[float, float, Coatings]
 
 # Triangle size over its distance from the contact edge.

@@ -12,8 +12,6 @@ from .mesh import MeridianMesh
 from .recovery import HarmonicField
 from .scaling import LayeredSolid
 
-__all__ = ["ElasticState"]
-
 
 @dataclass(frozen=True, eq=False)
 class ElasticState:

@@ -5,18 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-__all__ = [
-    "GivenPressure",
-    "check_ball",
-    "check_choice",
-    "check_friction",
-    "check_materials",
-    "check_positive",
-    "check_proportions",
-    "check_radius",
-    "prescribed_pressure",
-]
-
 MAX_COATINGS = 50
 MAX_CONTRAST = 1e4
 MIN_THICKNESS = 1e-4

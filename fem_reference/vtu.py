@@ -14,8 +14,6 @@ from skfem import MeshTri
 if TYPE_CHECKING:
     from .solution import Solution
 
-__all__ = ["PlaneMesh", "plane_mesh", "write_vtu"]
-
 STRESSES = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 
 
