@@ -23,13 +23,16 @@ from functools import cached_property
 import numpy as np
 import scipy.sparse as sp
 
-from .axisymmetric import Discretisation
-from .linear_system import constrained_solve
+from .axisymmetric import Discretisation, Skeleton
+from .linear_system import ConstrainedFactor
 from .scaling import LayeredSolid
 
 __all__ = ["HarmonicCompliance", "harmonic_compliance"]
 
 DIRECT = 8  # harmonics below are solved one by one
+FELT = (
+    4.0  # contact radii from the axis beyond which these vanish: like the power m + 1 of the distance, 4e-6
+)
 POINTS = 7  # of the interpolation beyond: 1e-4 of the deflection by a harmonic, 4e-7 of that of a contact
 
 
@@ -38,13 +41,14 @@ class HarmonicCompliance:
     """Response to the pressures that act within the contact radius of one mesh.
 
     solved : m of each solution.  fields : field vectors by unit loads of it, (field vector, nodes).
-    last, fold : harmonics 0, fold, 2 fold, .., last
+    meridians : of the same m, factorised.  last, fold : harmonics 0, fold, 2 fold, .., last
     """
 
     solid: LayeredSolid
     discretisation: Discretisation
     solved: tuple[float, ...]
     fields: tuple[np.ndarray, ...]
+    meridians: tuple["Meridian", ...]
     last: int
     fold: int
 
@@ -105,15 +109,14 @@ class HarmonicCompliance:
             tractions = friction / 2 * np.array([0 * below, below + above, above - below])
             if tractions.any():
                 of[m] = tractions
-        low = [m for m in of if m < DIRECT]
-        solved = (*low, *_high([m for m in of if m >= DIRECT]))
+        known = dict(zip(self.solved, self.meridians, strict=True))
+        solved = (*(m for m in of if m < DIRECT), *(m for m in self.solved if m >= DIRECT))
         found = {m: np.zeros((2 if m == 0 else 3) * self.discretisation.N) for m in of}
         for k, one in enumerate(solved):
             shares = [(m, w) for m in of for j, w in _weights(solved, m) if j == k]
+            meridian = known.get(one) or Meridian.of(self.solid, self.discretisation, one)
             columns = np.stack([w * of[m] for m, w in shares], axis=-1)
-            for (m, _), u in zip(
-                shares, _fields(self.solid, self.discretisation, one, columns).T, strict=True
-            ):
+            for (m, _), u in zip(shares, meridian.fields(columns).T, strict=True):
                 found[m] += u
         return found
 
@@ -134,20 +137,22 @@ class HarmonicCompliance:
 def harmonic_compliance(solid: LayeredSolid, d: Discretisation, last: int, fold: int) -> HarmonicCompliance:
     """Compliance to pressures within the mesh's contact radius, of harmonics 0, fold, .. to ``last``."""
     wanted = range(0, last + 1, fold)
-    solved = (*(m for m in wanted if m < DIRECT), *_high([m for m in wanted if m >= DIRECT]))
+    solved = (*(m for m in wanted if m < DIRECT), *_high(last + 1))
     normal = np.zeros((3, d.contact.size, d.contact.size))
     normal[0] = np.eye(d.contact.size)
-    fields = tuple(_fields(solid, d, m, normal) for m in solved)
-    return HarmonicCompliance(solid, d, solved, fields, last, fold)
+    meridians = tuple(Meridian.of(solid, d, m) for m in solved)
+    fields = tuple(one.fields(normal) for one in meridians)
+    return HarmonicCompliance(solid, d, solved, fields, meridians, last, fold)
 
 
-def _high(wanted: list[int]) -> list[float]:
-    """m of the solutions from which those ``wanted`` follow: these, or Chebyshev's points in log m."""
-    if len(wanted) <= POINTS:
-        return list(wanted)
-    span = np.log(wanted[0]), np.log(wanted[-1])
+def _high(last: int) -> list[float]:
+    """m of the solutions from which those of ``DIRECT`` to ``last`` follow: all, or Chebyshev's points in
+    log m."""
+    if last < DIRECT + POINTS:
+        return list(range(DIRECT, last + 1))
+    span = np.log(DIRECT), np.log(last)
     inner = (1 - np.cos(np.pi * np.arange(1, POINTS - 1) / (POINTS - 1))) / 2
-    return [wanted[0], *np.exp(span[0] + (span[1] - span[0]) * inner).tolist(), wanted[-1]]
+    return [DIRECT, *np.exp(span[0] + (span[1] - span[0]) * inner).tolist(), last]
 
 
 def _weights(solved: tuple[float, ...], m: int) -> list[tuple[int, float]]:
@@ -161,32 +166,50 @@ def _weights(solved: tuple[float, ...], m: int) -> list[tuple[int, float]]:
     return [(first + k, float(w) * solved[first + k] / m) for k, w in enumerate(lagrange)]
 
 
-def _fields(solid: LayeredSolid, d: Discretisation, m: float, loads: np.ndarray) -> np.ndarray:
-    """Field vectors (n, columns) under ``loads`` (3, nodes, columns): normal, radial, angular products.
+@dataclass(frozen=True, eq=False)
+class Meridian:
+    """The meridian problem of one m, factorised, under loads within the contact radius of the mesh."""
 
-    Far away the displacement due to the resultant: normal for m = 0, tangential for m = 1.
-    """
-    far, count = d.locations[:, d.outer], 2 if m == 0 else 3
-    normal, radial, angular = loads / (2 * np.pi if m == 0 else np.pi)
-    load = np.zeros((count * d.N, loads.shape[-1]))
-    given = np.zeros_like(load)
-    load[(count - 1) * d.N + d.contact] = normal
-    load[d.contact] = radial
-    axis: tuple[int, ...] = (0,) if m == 0 else (0, 2) if m == 1 else (0, 1, 2)
-    outside: list[tuple[np.ndarray, np.ndarray]] = []
-    if m == 0:
-        W = loads[0].sum(axis=0)
-        outside = [(u, W) for u in solid.far_fields(0, 1.0, far)]
-    else:  # virtual work R U + T V with U = S - V
-        load[d.N + d.contact] = angular - radial
-    if m == 1:
-        Q = (loads[1] - loads[2]).sum(axis=0)
-        outside = [(u, Q) for u in solid.far_fields(1, 1.0, far)]
-    for field, (u, resultant) in enumerate(outside):
-        given[field * d.N + d.outer] = u[:, None] * resultant
-    for field in axis:
-        given[field * d.N + d.axis] = 0.0
-    K = d.skeleton(solid.materials, m)
-    fixed = [field * d.N + d.outer for field in range(count)] + [field * d.N + d.axis for field in axis]
-    solved = constrained_solve(K.matrix, given, np.concatenate([*fixed, K.inner.ravel()]), load)
-    return K.extended(solved.u)
+    solid: LayeredSolid
+    discretisation: Discretisation
+    harmonic: float
+    skeleton: Skeleton
+    factor: ConstrainedFactor
+
+    @classmethod
+    def of(cls, solid: LayeredSolid, d: Discretisation, m: float) -> "Meridian":
+        count = 2 if m == 0 else 3
+        axis: tuple[int, ...] = (0,) if m == 0 else (0, 2) if m == 1 else (0, 1, 2)
+        K = d.skeleton(solid.materials, m)
+        fixed = [field * d.N + d.axis for field in axis]
+        r, z = d.locations
+        still = d.outer if m < DIRECT else np.flatnonzero(np.hypot(r, z) > FELT)
+        fixed += [field * d.N + still for field in range(count)]
+        return cls(solid, d, m, K, ConstrainedFactor.of(K.matrix, np.concatenate([*fixed, K.inner.ravel()])))
+
+    def fields(self, loads: np.ndarray) -> np.ndarray:
+        """Field vectors (n, columns) under ``loads`` (3, nodes, columns): normal, radial, angular products.
+
+        Far away the displacement due to the resultant: normal for m = 0, tangential for m = 1.
+        """
+        m, d = self.harmonic, self.discretisation
+        far, count = d.locations[:, d.outer], 2 if m == 0 else 3
+        normal, radial, angular = loads / (2 * np.pi if m == 0 else np.pi)
+        load = np.zeros((count * d.N, loads.shape[-1]))
+        given = np.zeros_like(load)
+        load[(count - 1) * d.N + d.contact] = normal
+        load[d.contact] = radial
+        outside: list[tuple[np.ndarray, np.ndarray]] = []
+        if m == 0:
+            W = loads[0].sum(axis=0)
+            outside = [(u, W) for u in self.solid.far_fields(0, 1.0, far)]
+        else:  # virtual work R U + T V with U = S - V
+            load[d.N + d.contact] = angular - radial
+        if m == 1:
+            Q = (loads[1] - loads[2]).sum(axis=0)
+            outside = [(u, Q) for u in self.solid.far_fields(1, 1.0, far)]
+        for field, (u, resultant) in enumerate(outside):
+            given[field * d.N + d.outer] = u[:, None] * resultant
+        for field in (0,) if m == 0 else (0, 2) if m == 1 else (0, 1, 2):
+            given[field * d.N + d.axis] = 0.0
+        return self.skeleton.extended(self.factor.solve(given, load))

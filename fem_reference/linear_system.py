@@ -97,3 +97,28 @@ def constrained_solve(
     residual = np.zeros_like(force)
     residual[free], force[free] = force[free], 0.0
     return Constrained(u, force, residual)
+
+
+@dataclass(frozen=True, eq=False)
+class ConstrainedFactor:
+    """K factorised once, with given values at the unknowns ``fixed``, for loads that are not known yet."""
+
+    factor: Factor
+    free: np.ndarray
+    fixed: np.ndarray
+    beside: sp.csr_matrix
+
+    @classmethod
+    def of(cls, K: sp.csc_matrix, fixed: np.ndarray) -> "ConstrainedFactor":
+        fixed = np.unique(fixed)
+        A, _, _, free = condense(K, np.zeros(K.shape[0]), D=fixed)
+        return cls(factorised(A.tocsc()), free, fixed, K[:, fixed].tocsr()[free])
+
+    def solve(self, given: np.ndarray, load: np.ndarray) -> np.ndarray:
+        """u of K u = load with u = ``given`` at the unknowns ``fixed``, (n, columns) each.
+
+        To the rounding of the factor: displacements are read, not forces.
+        """
+        u = given.copy()
+        u[self.free] = self.factor(load[self.free] - self.beside @ given[self.fixed])
+        return u

@@ -77,14 +77,19 @@ def check_pressure(
     return PressedSolid(fine, under(COARSER * size) if estimate_uncertainty else None, unit)
 
 
-def discretised(solid: LayeredSolid, size: float, surface: float, order: int) -> Discretisation:
-    """Elements of a mesh without a contact edge: below the radius 1 the surface is divided evenly."""
+def discretised(
+    solid: LayeredSolid, size: float, surface: float, order: int, growth: float = 1.5
+) -> Discretisation:
+    """Elements of a mesh without a contact edge: below the radius 1 the surface is divided evenly.
+
+    growth : of the size towards the outer boundary
+    """
     grading = Grading(
         size,
         1.9 * size,
         size,
         size,
-        far_size=min(1.5 * size, 0.7),
+        far_size=min(growth * size, 0.7),
         film_size=2 * size,
         rows=0.8 / size,
         surface=surface,

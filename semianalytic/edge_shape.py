@@ -102,6 +102,20 @@ class Shape:
         t = np.where(t > FAR, t + 2 * np.tensordot(np.where(high, self.contour, 0.0), H, 1), t)
         return t, s2, H
 
+    def inside(self, x: Array, y: Array) -> Array:
+        """t at x, y [m], without the harmonic polynomials one by one."""
+        (x0, y0), (A, B) = self.centre, self.axes
+        u, v = (x - x0) / A, (y - y0) / B
+        t: Array = 1 - u * u - v * v
+        if not self.contour.any():
+            return t
+        power = np.zeros(max(map(abs, self.harmonics)) + 1, dtype=complex)
+        for n, c in zip(self.harmonics, self.contour, strict=True):
+            power[abs(n)] += c if n >= 0 else -1j * c
+        w = u + 1j * v
+        t = t + 2 * np.polynomial.polynomial.polyval(w, power[:3]).real
+        return np.where(t > FAR, t + 2 * (w**3 * np.polynomial.polynomial.polyval(w, power[3:])).real, t)
+
     def polynomials(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array, Array]:
         """t, s^2 and H_n, (k,) + points, at x, y [m], broadcast."""
         (x0, y0), (A, B) = self.centre, self.axes
@@ -218,9 +232,32 @@ def start(pressure: Array, x: Array, y: Array, harmonics: tuple[int, ...], terms
         r = 4 * float(np.mean(u * v)) / (A * B)
         A, B = A * float(np.sqrt(1 - r * r)), B * float(np.sqrt(1 - r * r))
         contour[harmonics.index(-2)] = r / 2
+    if harmonics == FULL:
+        A, B = _lobed(contour, harmonics, u / A + 1j * v / B, (A, B), area)
     b = np.zeros((terms, len(harmonics)))
     b[0, 0] = 1.5 * float(pressure[loaded].mean())
     return Shape((x0, y0), (A, B), harmonics, contour, b)
+
+
+def _lobed(
+    contour: Array, harmonics: tuple[int, ...], w: Array, axes: tuple[float, float], area: float
+) -> tuple[float, float]:
+    """Writes three lobes of the loaded patches w = u + iv, each of an ``area`` [m^2], to the ``contour``.
+
+    The mean of H_n over a circle whose edge is moved by c_n cos(n theta) is c_n, n odd; an ellipse has none.
+    Less than a patch in all comes from the staircase and is left out. Returns the axes [m] that leave the
+    area as it is.
+    """
+    A, B = axes
+    moments = {n: complex(np.mean(w ** abs(n))) for n in harmonics if abs(n) == 3}
+    lobes = {n: one.real if n > 0 else one.imag for n, one in moments.items()}
+    if sum(map(abs, lobes.values())) * min(axes) < np.sqrt(area):
+        return axes
+    for n, c in lobes.items():
+        contour[harmonics.index(n)] = c
+    whole = Shape((0.0, 0.0), axes, harmonics, contour, np.zeros((1, len(harmonics))))
+    wider = float(np.sqrt(w.size * area / np.pi)) / whole.radius
+    return A * wider, B * wider
 
 
 @dataclass(frozen=True, eq=False)

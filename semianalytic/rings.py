@@ -224,8 +224,7 @@ class SmoothContour:
         def t(ring: NDArray[np.intp], phi: Array) -> Array:
             shift = (...,) + (None,) * (phi.ndim - 1)
             u = x[ring][shift] + rho[ring][shift] * np.cos(phi)
-            value: Array = self.shape.polynomials(u, y[ring][shift] + rho[ring][shift] * np.sin(phi))[0]
-            return value
+            return self.shape.inside(u, y[ring][shift] + rho[ring][shift] * np.sin(phi))
 
         everywhere = np.arange(rho.size)
         sampled = t(everywhere, np.broadcast_to(2 * np.pi * np.arange(RING) / RING, (rho.size, RING)))
@@ -235,26 +234,29 @@ class SmoothContour:
         ring, low, high, curvature = ring[kept], low[kept], high[kept], curvature[kept]
         t_low, t_high = t_low[kept], t_high[kept]
         crossing = t_low < 0
-        inner, outer = np.zeros(ring.size), np.ones(ring.size)
-        for _ in range(50):  # bisection: the share of the segment at which t changes sign
-            middle = (inner + outer) / 2
-            positive = t(ring, low + middle * (high - low)) > 0
-            inner, outer = np.where(positive, inner, middle), np.where(positive, middle, outer)
+        outer, cut = np.ones(ring.size), np.flatnonzero(crossing)
+        at, begin, length = ring[cut], low[cut], (high - low)[cut]
+        inside, outside = np.ones(cut.size), np.zeros(cut.size)
+        for _ in range(42):  # bisection: the share of the segment at which t changes sign
+            middle = (inside + outside) / 2
+            positive = t(at, begin + middle * length) > 0
+            outside, inside = np.where(positive, outside, middle), np.where(positive, middle, inside)
+        outer[cut] = inside
         width = np.abs(high - low)
         missed = np.sqrt(np.maximum(2 * t_low, 0) / np.maximum(curvature, 1e-300))
         delta = np.where(crossing, outer * width, missed)
         s, w = _gauss(self.angular)
         beta, slope = _from_gap(delta, width, crossing, s)
         phi = low[:, None] + np.sign(high - low)[:, None] * beta
-        u = x[ring][:, None] + rho[ring][:, None] * np.cos(phi)
-        p = self.shape.pressure(u, y[ring][:, None] + rho[ring][:, None] * np.sin(phi)) * (slope * w)
-        out = np.empty((7, rho.size))
-        for m in range(4):
-            for at, wave in ((2 * m - 1, np.cos), (2 * m, np.sin)):
-                if at >= 0:
-                    value = (-1) ** m * (p * (wave(m * phi) if m else 1.0)).sum(axis=1)
-                    out[at] = np.bincount(ring, value, minlength=rho.size)
-        return out
+        cos, sin = np.cos(phi), np.sin(phi)
+        p = self.shape.pressure(
+            x[ring][:, None] + rho[ring][:, None] * cos, y[ring][:, None] + rho[ring][:, None] * sin
+        ) * (slope * w)
+        sums, even, odd = [p.sum(axis=1)], p, 0.0 * p
+        for _ in range(3):  # the direction to the point is that from it turned by pi
+            even, odd = odd * sin - even * cos, -even * sin - odd * cos
+            sums += [even.sum(axis=1), odd.sum(axis=1)]
+        return np.array([np.bincount(ring, one, minlength=rho.size) for one in sums])
 
 
 @dataclass(frozen=True, eq=False)

@@ -181,8 +181,9 @@ class Solution:
             touched = _at(level.nodes, pressure**2, x, y, order=1) > 0  # the cubic may oscillate beyond
             return np.sqrt(np.maximum(np.where(touched, _at(level.nodes, pressure**2, x, y), 0), 0))
         value = smooth.pressure(x, y)
-        if level.rest is not None:
-            value = value + _at(level.nodes, level.grid.whole(level.rest), x, y)
+        if level.rest is not None and level.shape is not None:  # its interpolation ripples beyond the edge
+            rest = _at(level.nodes, level.grid.whole(level.rest), x, y)
+            value = value + np.where(level.shape.inside(np.asarray(x), np.asarray(y)) > 0, rest, 0.0)
         return np.maximum(value, 0)
 
     def stress(

@@ -42,7 +42,7 @@ def _shape_by_elements(problem: CoatedContact, numerics: Mapping[str, Any]) -> A
     """An indenter that is no sphere: elements correct a pressure of patches until their gap vanishes."""
     import fem_reference
 
-    start = solve_semianalytic(problem, {"patches": 129, "estimate_uncertainty": False})
+    start = solve_semianalytic(problem, {"patches": 257, "estimate_uncertainty": False})
     given = {name: value for name, value in keywords(problem).items() if name != "ball"}
     return fem_reference.solve_shape(start=start.pressure, **given, **numerics)
 
