@@ -18,6 +18,10 @@ THINNEST = 0.02  # h / a_h of a coating where THICKNESS is that of all together
 POISSON = (0.0, 0.49)  # of every layer
 FRICTION = (0.0, 0.8)
 MOST_COATINGS = 5
+# Of problems of thin films alone, under a ball without coatings.
+FILM_RATIO = (0.1, 10.0)
+FILM_THICKNESS = (0.001, 0.02)
+MOST_FILMS = 2
 ELASTIC = 0.5  # share of the problems with an elastic ball, of no coating to three
 FRICTIONLESS = 1 / 3  # share of the problems with f = 0, the only ones with a symmetric stress
 # Linear elasticity has no length scale: these ranges only exclude an effect of the units.
@@ -35,27 +39,31 @@ class Draw:
     text: str
 
 
-def draw(seed: int, number: int) -> Draw:
+def draw(seed: int, number: int, films: bool = False) -> Draw:
     """Problem ``number`` of the sequence ``seed``.
 
     Moduli, thicknesses, radius are uniform in their logarithm, Poisson's ratios as well as friction
     uniform; one to five coatings. In half of the problems THICKNESS is that of each coating, in the
     other half that of the whole stack, divided at random, so that more films are thin, down to THINNEST.
     The ball is drawn last, from the same ranges.
+
+    films : one or two films thinner than THICKNESS, under a ball without coatings.
     """
     random = np.random.default_rng([seed, number])
-    coatings = int(random.integers(1, MOST_COATINGS + 1))
+    coatings = int(random.integers(1, (MOST_FILMS if films else MOST_COATINGS) + 1))
     E = _log_uniform(random, MODULUS)
-    ratios = [_log_uniform(random, RATIO) for _ in range(coatings)]
+    ratios = [_log_uniform(random, FILM_RATIO if films else RATIO) for _ in range(coatings)]
     poisson = [_rounded(random.uniform(*POISSON)) for _ in range(coatings + 1)]
-    thicknesses = _thicknesses(random, coatings)
+    thin = [_log_uniform(random, FILM_THICKNESS) for _ in range(coatings)] if films else None
+    thicknesses = thin or _thicknesses(random, coatings)
     sliding = random.uniform() >= FRICTIONLESS
     friction = _rounded(random.uniform(*FRICTION)) if sliding else 0.0
     radius = _log_uniform(random, RADIUS)
     a_h = radius * _log_uniform(random, FLATNESS)
     compliance, ball, on_ball = (1 - poisson[-1] ** 2) / E, "", []
     if random.uniform() < ELASTIC:
-        E_ball, count = _log_uniform(random, RATIO) * E, int(random.integers(0, MOST_COATINGS + 1))
+        most = 0 if films else MOST_COATINGS
+        E_ball, count = _log_uniform(random, RATIO) * E, int(random.integers(0, most + 1))
         E_ball, nu = _rounded(E_ball), _rounded(random.uniform(*POISSON))
         on_ball = [
             f"{{ E = {_rounded(_log_uniform(random, RATIO) * E_ball)!r}, "
@@ -67,7 +75,10 @@ def draw(seed: int, number: int) -> Draw:
     load = _rounded(4 * a_h**3 / (3 * radius * compliance))
 
     layers = ", ".join(f"E1/E2 = {r:.3g}, h = {h:.3g} a_h" for r, h in zip(ratios, thicknesses, strict=True))
-    title = f"Draw {number} of seed {seed}: {layers}" + (f", f = {friction:.3g}" if friction else "")
+    kind = "films" if films else "draw"
+    title = f"{kind.capitalize()} {number} of seed {seed}: {layers}" + (
+        f", f = {friction:.3g}" if friction else ""
+    )
     title += f", elastic ball, coatings on it: {len(on_ball)}" if ball else ""
     lines = [
         f'title = "{title}"',
@@ -86,7 +97,7 @@ def draw(seed: int, number: int) -> Draw:
             f"nu = {nu!r}",
             f"thickness_over_a_h = {h!r}",
         ]
-    return Draw(f"draw_{seed}_{number:03d}", title, "\n".join(lines) + "\n")
+    return Draw(f"{kind}_{seed}_{number:03d}", title, "\n".join(lines) + "\n")
 
 
 def _thicknesses(random: np.random.Generator, coatings: int) -> list[float]:

@@ -3,7 +3,7 @@
 from itertools import pairwise
 
 from verification.cases.case_file import Case
-from verification.cases.random_problems import RATIO, THICKNESS
+from verification.cases.random_problems import FILM_RATIO, FILM_THICKNESS, MOST_FILMS, RATIO, THICKNESS
 from verification.problem.coated_contact import BALL, FLAT, CoatedContact
 
 
@@ -67,16 +67,24 @@ def outside_verified(case: Case) -> str:
     problem, found = case.problem, []
     for body in problem.bodies:
         seen, of = problem.seen_from(body), "" if body == FLAT else f" on the {body}"
+        thickness, ratio = (FILM_THICKNESS, FILM_RATIO) if _films(problem) else (THICKNESS, RATIO)
         for i, layers in enumerate(_coatings(seen, case.layers.get(body)), start=1):
             h = sum(h for *_, h in layers) / problem.a_h
-            if not THICKNESS[0] * (1 - 1e-3) <= h <= THICKNESS[1] * (1 + 1e-3):
-                found.append(f"coating {i}{of}, h = {h:.2g} a_h, outside {_between(THICKNESS)}")
+            if not thickness[0] * (1 - 1e-3) <= h <= thickness[1] * (1 + 1e-3):
+                found.append(f"coating {i}{of}, h = {h:.2g} a_h, outside {_between(thickness)}")
             ratios = [E / seen.substrate[0] for E, _, _ in layers]
-            if not RATIO[0] <= min(ratios) <= max(ratios) <= RATIO[1]:
+            if not ratio[0] <= min(ratios) <= max(ratios) <= ratio[1]:
                 found.append(
-                    f"coating {i}{of}, E = {ratios[0]:.2g} of the substrate's, outside {_between(RATIO)}"
+                    f"coating {i}{of}, E = {ratios[0]:.2g} of the substrate's, outside {_between(ratio)}"
                 )
     return "; ".join(found)
+
+
+def _films(problem: CoatedContact) -> bool:
+    """Whether the coatings are as thin as those of the random problems of films, where the ball has none."""
+    thin = all(h <= FILM_THICKNESS[1] * problem.a_h for *_, h in problem.coatings)
+    of_ball = 0 if problem.ball is None else len(problem.ball[2])
+    return thin and 1 <= len(problem.coatings) <= MOST_FILMS and not of_ball
 
 
 def _between(bounds: tuple[float, float]) -> str:

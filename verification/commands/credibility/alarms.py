@@ -39,6 +39,7 @@ def alarms(
     *,
     count: int = 24,
     seed: int = 1,
+    films: Flag = False,
     output: Output = Path("reports/alarms"),
     record: Flag = False,
     records: RecordsFolder = RECORDS,
@@ -57,6 +58,7 @@ def alarms(
     Args:
         count: Number of problems.
         seed: Seed of the random numbers.
+        films: One or two films of h/a_h from 0.001 to 0.02, E1/E2 from 0.1 to 10, none on the ball.
         output: Directory of the report, of the results, of the case files.
         record: Store the record as RECORDS/alarms.json, for the credibility page of every report.
         time_limit: Seconds one problem may take before it is stopped and counted as alarms.
@@ -64,6 +66,8 @@ def alarms(
     jobs = worker_count(jobs, time_limit)
     if count < 1 or seed < 0:
         raise CommandError(f"--count = {count}, --seed = {seed}; only the seed may be zero, none negative")
+    if record and films:
+        raise CommandError("--record with --films; the record is that of all random problems, leave one out")
     if record:
         require_checkout(records, "--records")
     require_gmsh()
@@ -73,12 +77,13 @@ def alarms(
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):
-        cases = [_case(seed, number, output) for number in range(count)]
+        cases = [_case(seed, number, films, output) for number in range(count)]
         kept = kept_results(cases, output) if resume else {}
         tasks = [case_task(case, output) for case in cases if case.name not in kept]
         solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
         results = [kept.get(case.name) or solved[case.name] for case in cases]
-        info = run_info(f"coatcheck alarms --count {count} --seed {seed}", started, jobs)
+        of = f"--count {count} --seed {seed}{' --films' if films else ''}"
+        info = run_info(f"coatcheck alarms {of}", started, jobs)
         page = write_report(Material(results, info), output, junit_xml(results, info))
         found = counted(results, seed, info)
         stored = write_record(records, found) if record else None
@@ -89,8 +94,8 @@ def alarms(
     return exit_code(results)
 
 
-def _case(seed: int, number: int, output: Path) -> Case:
-    drawn = draw(seed, number)
+def _case(seed: int, number: int, films: bool, output: Path) -> Case:
+    drawn = draw(seed, number, films)
     path = output / "problems" / f"{drawn.name}.toml"
     write_atomically(path, drawn.text)
     return parse_case(drawn.text.encode(), path)
