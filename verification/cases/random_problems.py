@@ -20,7 +20,8 @@ FRICTION = (0.0, 0.8)
 MOST_COATINGS = 5
 # Of problems of thin films alone, under a ball without coatings.
 FILM_RATIO = (0.1, 10.0)
-FILM_THICKNESS = (0.001, 0.02)
+FILM_THICKNESS = (0.001, 0.02)  # h / a_h
+OVER_INTERLAYER = (0.001, 0.2)  # h / a_h of the outer of two
 MOST_FILMS = 2
 ELASTIC = 0.5  # share of the problems with an elastic ball, of no coating to three
 FRICTIONLESS = 1 / 3  # share of the problems with f = 0, the only ones with a symmetric stress
@@ -47,15 +48,15 @@ def draw(seed: int, number: int, films: bool = False) -> Draw:
     other half that of the whole stack, divided at random, so that more films are thin, down to THINNEST.
     The ball is drawn last, from the same ranges.
 
-    films : one or two films thinner than THICKNESS, under a ball without coatings.
+    films : a thin film, alone or below another, under a ball without coatings.
     """
     random = np.random.default_rng([seed, number])
     coatings = int(random.integers(1, (MOST_FILMS if films else MOST_COATINGS) + 1))
     E = _log_uniform(random, MODULUS)
     ratios = [_log_uniform(random, FILM_RATIO if films else RATIO) for _ in range(coatings)]
     poisson = [_rounded(random.uniform(*POISSON)) for _ in range(coatings + 1)]
-    thin = [_log_uniform(random, FILM_THICKNESS) for _ in range(coatings)] if films else None
-    thicknesses = thin or _thicknesses(random, coatings)
+    thin = (OVER_INTERLAYER, FILM_THICKNESS)[-coatings:] if films else ()
+    thicknesses = [_log_uniform(random, h) for h in thin] or _thicknesses(random, coatings)
     sliding = random.uniform() >= FRICTIONLESS
     friction = _rounded(random.uniform(*FRICTION)) if sliding else 0.0
     radius = _log_uniform(random, RADIUS)

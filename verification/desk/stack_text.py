@@ -3,8 +3,17 @@
 from itertools import pairwise
 
 from verification.cases.case_file import Case
-from verification.cases.random_problems import FILM_RATIO, FILM_THICKNESS, MOST_FILMS, RATIO, THICKNESS
+from verification.cases.random_problems import (
+    FILM_RATIO,
+    FILM_THICKNESS,
+    MOST_FILMS,
+    OVER_INTERLAYER,
+    RATIO,
+    THICKNESS,
+)
 from verification.problem.coated_contact import BALL, FLAT, CoatedContact
+
+FILMS = (FILM_THICKNESS[0], OVER_INTERLAYER[1])
 
 
 def stack(case: Case) -> str:
@@ -67,7 +76,7 @@ def outside_verified(case: Case) -> str:
     problem, found = case.problem, []
     for body in problem.bodies:
         seen, of = problem.seen_from(body), "" if body == FLAT else f" on the {body}"
-        thickness, ratio = (FILM_THICKNESS, FILM_RATIO) if _films(problem) else (THICKNESS, RATIO)
+        thickness, ratio = (FILMS, FILM_RATIO) if _films(problem) else (THICKNESS, RATIO)
         for i, layers in enumerate(_coatings(seen, case.layers.get(body)), start=1):
             h = sum(h for *_, h in layers) / problem.a_h
             if not thickness[0] * (1 - 1e-3) <= h <= thickness[1] * (1 + 1e-3):
@@ -81,8 +90,8 @@ def outside_verified(case: Case) -> str:
 
 
 def _films(problem: CoatedContact) -> bool:
-    """Whether the coatings are as thin as those of the random problems of films, where the ball has none."""
-    thin = all(h <= FILM_THICKNESS[1] * problem.a_h for *_, h in problem.coatings)
+    """Whether there is a film as thin as those of the random problems of films, alone or below another."""
+    thin = any(h < THICKNESS[0] * problem.a_h for *_, h in problem.coatings)
     of_ball = 0 if problem.ball is None else len(problem.ball[2])
     return thin and 1 <= len(problem.coatings) <= MOST_FILMS and not of_ball
 

@@ -58,7 +58,7 @@ def alarms(
     Args:
         count: Number of problems.
         seed: Seed of the random numbers.
-        films: One or two films of h/a_h from 0.001 to 0.02, E1/E2 from 0.1 to 10, none on the ball.
+        films: A film of h/a_h from 0.001 to 0.02, alone or below one up to 0.2; E1/E2 from 0.1 to 10.
         output: Directory of the report, of the results, of the case files.
         record: Store the record as RECORDS/alarms.json, for the credibility page of every report.
         time_limit: Seconds one problem may take before it is stopped and counted as alarms.
