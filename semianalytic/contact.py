@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import arrays
-from semianalytic.arrays import Mirror, blocks, namespace
+from semianalytic.arrays import Mirror, blocks
 
 __all__ = ["Contact", "NotConverged", "solve"]
 
@@ -74,8 +74,7 @@ class Contact:
 
     def embedded(self, where: tuple[slice, slice], shape: tuple[int, int], open_gap: float) -> "Contact":
         """The same contact on a grid of which it was a window; the gap beyond becomes ``open_gap``."""
-        xp = namespace(self.pressure)
-        pressure, gap = xp.zeros(shape), xp.full(shape, open_gap)
+        pressure, gap = np.zeros(shape), np.full(shape, open_gap)
         pressure[where], gap[where] = self.pressure, self.gap
         return replace(self, pressure=pressure, gap=gap)
 
@@ -85,10 +84,10 @@ class _ContactSet:
 
     def __init__(self, inside: Mask, problem: "_Problem", work: Array) -> None:
         self.extension, self.mirror = problem.extension, problem.mirror
-        self._xp, self._dtype = namespace(inside), work.dtype
+        self._dtype = work.dtype
         # what P gives only directs the steps: a thousandth is enough where these are of single precision
         single = isinstance(work, np.ndarray) and work.dtype == np.float32
-        self._share = self._xp.empty(inside.shape, dtype=np.float16 if single else work.dtype)
+        self._share = np.empty(inside.shape, dtype=np.float16 if single else work.dtype)
         self.update(inside, work)
 
     def update(self, inside: Mask, work: Array) -> None:
@@ -98,7 +97,7 @@ class _ContactSet:
 
     def one(self, rows: tuple[slice, slice]) -> Array:
         """Unit residual, extended beyond the contact set."""
-        share: Array = self._xp.asarray(self._xp.minimum(self._share[rows], FADED), dtype=self._dtype)
+        share: Array = np.asarray(np.minimum(self._share[rows], FADED), dtype=self._dtype)
         share /= FADED
         share[self.inside[rows]] = 1.0
         return share
@@ -107,8 +106,8 @@ class _ContactSet:
         """r, which is 0 outside, in contact; its local mean just outside, 0 far away."""
         self._mean(r, out)
         for rows in blocks(r):
-            out[rows] /= self._xp.maximum(self._share[rows], FADED)
-            out[rows] = self._xp.where(self.inside[rows], r[rows], out[rows])
+            out[rows] /= np.maximum(self._share[rows], FADED)
+            out[rows] = np.where(self.inside[rows], r[rows], out[rows])
         return out
 
     def _mean(self, r: NDArray[Any], out: Array) -> Array:
@@ -191,9 +190,8 @@ class _State:
     history: list[tuple[float, float]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        xp = namespace(self.z)
-        self.last, self.step, self.P_one = xp.empty_like(self.z), xp.zeros_like(self.z), xp.empty_like(self.z)
-        self.tension = xp.empty_like(self.contact.inside)
+        self.last, self.step, self.P_one = np.empty_like(self.z), np.zeros_like(self.z), np.empty_like(self.z)
+        self.tension = np.empty_like(self.contact.inside)
 
 
 def solve(
@@ -260,25 +258,23 @@ def solve(
 
 def _first_guess(problem: _Problem, work: tuple[Array, Array] | None) -> _State:
     p = _start(problem)
-    xp = namespace(p)
-    extended, z = (xp.empty(p.shape), xp.empty(p.shape)) if work is None else work
+    extended, z = (np.empty(p.shape), np.empty(p.shape)) if work is None else work
     contact = _ContactSet(p > 0, problem, extended)
-    state = _State(p, xp.empty_like(p), contact, problem.approach or 0.0, extended, z)
+    state = _State(p, np.empty_like(p), contact, problem.approach or 0.0, extended, z)
     _find_gap_of_pressure(state, problem)
     _find_P_one(state, problem)
     return state
 
 
 def _start(problem: _Problem) -> Array:
-    p = problem.start() if callable(problem.start) else arrays.copy(problem.start)
-    xp = namespace(p)
+    p = problem.start() if callable(problem.start) else np.array(problem.start, order="C")
     p[p < 0] = 0.0
     if not np.isfinite(arrays.total(p)):
         raise NotConverged(
             "the first guess of the pressure is not finite; look at the influence coefficients"
         )
-    if not xp.any(p > 0):  # a flat punch, or a contact narrower than a patch
-        p = xp.asarray(problem.gap == xp.min(problem.gap), dtype=xp.float64)
+    if not np.any(p > 0):  # a flat punch, or a contact narrower than a patch
+        p = np.asarray(problem.gap == np.min(problem.gap), dtype=np.float64)
     return problem.balanced(p)
 
 
@@ -303,7 +299,7 @@ def _precondition(state: _State, problem: _Problem) -> None:
     if state.iterations >= PRECONDITIONED_ITERATIONS:
         return
     z = problem.precondition(state.extended if state.iterations < EXTENDED_ITERATIONS else state.z)
-    arrays.masked(z, state.contact.inside, out=state.z)
+    np.multiply(z, state.contact.inside, out=state.z)
 
 
 def _find_P_one(state: _State, problem: _Problem) -> None:
@@ -311,14 +307,14 @@ def _find_P_one(state: _State, problem: _Problem) -> None:
         for rows in blocks(state.z):
             state.extended[rows] = state.contact.one(rows)
         state.z[...] = 1.0
-        arrays.masked(state.z, state.contact.inside, out=state.z)
+        np.multiply(state.z, state.contact.inside, out=state.z)
         _precondition(state, problem)
         state.P_one[...] = state.z
 
 
 def _find_gap(state: _State, problem: _Problem) -> None:
     """Step 1: z = P r, r the gap in contact; g with the delta for which sum z = 0 keeps the load."""
-    arrays.masked(state.g, state.contact.inside, out=state.z)
+    np.multiply(state.g, state.contact.inside, out=state.z)
     state.contact.extended(state.z, state.extended)
     _precondition(state, problem)
     if problem.approach is None:
@@ -342,14 +338,14 @@ def _find_gap_of_pressure(state: _State, problem: _Problem) -> None:
 
 def _measure(state: _State, problem: _Problem) -> None:
     """Residual, penetration and tension of the iterate."""
-    xp, largest = namespace(state.g), []
+    largest = []
     for rows in blocks(state.g):
         g = state.g[rows]
-        r = xp.empty_like(g)
-        arrays.masked(g, state.contact.inside[rows], out=r)
-        inside = float(xp.max(r)), -float(xp.min(r))
+        r = np.empty_like(g)
+        np.multiply(g, state.contact.inside[rows], out=r)
+        inside = float(np.max(r)), -float(np.min(r))
         r -= g
-        largest.append((*inside, float(xp.max(r))))
+        largest.append((*inside, float(np.max(r))))
         state.tension[rows] = state.p[rows] < 0
     residual, negative, depth = np.max(largest, axis=0)
     state.residual = float(np.maximum(residual, negative)) / problem.scale
@@ -359,7 +355,7 @@ def _measure(state: _State, problem: _Problem) -> None:
     # a margin for patches that enter before the residual is small; then the tolerance alone
     margin = 1.0 if state.residual <= problem.tolerance else 0.5
     state.deep = margin * problem.tolerance * problem.scale
-    state.admissible = not xp.any(state.tension) and state.depth <= state.deep
+    state.admissible = not np.any(state.tension) and state.depth <= state.deep
 
 
 def _is_solved(state: _State, problem: _Problem) -> bool:
@@ -397,7 +393,7 @@ def _update_set(state: _State, problem: _Problem) -> bool:
     """
     if state.admissible or state.new:
         return False
-    xp, leave, enter = namespace(state.g), state.tension, ~state.contact.inside  # p < 0 in contact alone
+    leave, enter = state.tension, ~state.contact.inside  # p < 0 in contact alone
     if state.set_updates >= PREDICTED_UPDATES:
         enter &= state.g < -state.deep
     else:
@@ -409,8 +405,8 @@ def _update_set(state: _State, problem: _Problem) -> bool:
             predicted = state.g[rows] - state.extended[rows] + state.contact.one(rows) * state.shift
             enter[rows] &= predicted < -0.5 * problem.tolerance * problem.scale
             leave[rows] &= state.p[rows] < state.z[rows]
-    any_leave = bool(xp.any(leave))
-    if not (any_leave or xp.any(enter)):
+    any_leave = bool(np.any(leave))
+    if not (any_leave or np.any(enter)):
         return False
     enter |= state.contact.inside
     enter ^= leave
@@ -463,5 +459,4 @@ def _contact(state: _State, problem: _Problem) -> Contact:
 
 
 def _largest(a: Array) -> float:
-    xp = namespace(a)
-    return max(float(xp.max(a)), -float(xp.min(a)))
+    return max(float(np.max(a)), -float(np.min(a)))

@@ -17,7 +17,7 @@ import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import array_convolution, halved_convolution
+from semianalytic import halved_convolution
 
 __all__ = ["circulant_inverse", "even_convolution", "good_size", "memory_size"]
 
@@ -53,16 +53,12 @@ def even_convolution(
 
     kernel : K(i, j) for i, j >= 0, shape (nx, ny), the largest offsets between two patches.
     quarter : p is even about the middle of the nx x ny patches and held on its far side, that included.
-    An array of another library than NumPy is transformed by that; a quarter is of NumPy.
     Returns u(p) for p of shape (nx, ny), of a quarter ((nx + 1) // 2, (ny + 1) // 2); u has its shape, units
     K times p. It reuses its work memory: concurrent calls need one operator each.
     memory : flat, of ``memory_size``, not for a quarter; u is then a part of it, and lost with its next use.
     In memory of single precision p may be of either; u(p, out) of double: ``halved_convolution``.
     """
     nx, ny = kernel.shape
-    if not isinstance(kernel, np.ndarray):
-        of_library = array_convolution.even_spectrum(kernel, good_size(2 * nx - 1), good_size(2 * ny - 1))
-        return array_convolution.apply_even(of_library, nx, ny)
     if quarter:
         # cosines of half-odd frequency change sign over 2 mx patches: what wraps around lands beyond u
         mx, my = (int(ducc0.fft.good_size(n, True)) for n in (nx, ny))
@@ -91,9 +87,6 @@ def circulant_inverse(
     """
     nx, ny = kernel.shape
     mx, my = good_size(nx), good_size(ny)
-    if not isinstance(kernel, np.ndarray):
-        spectrum = array_convolution.even_spectrum(kernel[: mx // 2 + 1, : my // 2 + 1], mx, my)
-        return array_convolution.apply_even(array_convolution.reciprocal(spectrum), nx, ny)
     spectrum = _even_spectrum(kernel[: mx // 2 + 1, : my // 2 + 1], mx, my, threads)
     # truncation can turn eigenvalues negative; true ones do not fall below those of the shortest waves
     floor = 0.5 * np.median(np.abs(spectrum))

@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import edge_shape, influence, smooth_edge
-from semianalytic.arrays import namespace, to_numpy
 from semianalytic.edge_shape import Shape, Step
 from semianalytic.level import Level, LevelProblem
 from semianalytic.smooth_edge import EdgePatches
@@ -54,7 +53,7 @@ def corrected(problem: LevelProblem, start: Shape | None) -> Level:
             return level
     problem.gap = gap
     alone = problem.solve(0.0, 0.0)
-    p = to_numpy(alone.found.pressure)
+    p = alone.found.pressure
     shape = _start(problem, p)
     if shape is None:
         return alone
@@ -74,17 +73,17 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
     p : pressure of the patches alone [Pa], to which the shape is fitted first; None for a shape that is
     fitted.
     """
-    grid, (x, y), xp = problem.grid, problem.centres, namespace(gap)
+    grid, (x, y) = problem.grid, problem.centres
     near, weight, convolutions = _near_influence(problem), grid.weight(gap.shape), 0
     step: Step | None = None
 
     def deflection(field: Array) -> Array:
-        return np.array(to_numpy(problem.deflection(xp.asarray(field))))  # its own memory is used again
+        return np.array(problem.deflection(field))  # its own memory is used again
 
     fit = partial(edge_shape.fitted, x=x, y=y, deflection=deflection, weight=weight, patch=grid.d)
     fresh = p is not None
     if p is None:  # f is smoother than the interpolated pressure of the patches
-        p = to_numpy(problem.first_guess()) if shape.outside else shape.pressure(x, y)
+        p = problem.first_guess() if shape.outside else shape.pressure(x, y)
     for number in range(ROUNDS):
         # the patches alone know the radius better than the shape of their pressure near the edge
         if fresh and number < HELD:
@@ -98,11 +97,11 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
         u, missing = smooth_edge.beyond_centres(edge, p, grid, deflection, near)
         if not abs(missing) < LOST * grid.force(p):
             return None
-        problem.gap = gap + xp.asarray(u)
+        problem.gap = gap + u
         del edge, u  # two hundred numbers a patch at the edge, which the iteration does not need
-        level = problem.solve(0.0, missing, start=xp.asarray(p))
+        level = problem.solve(0.0, missing, start=p)
         convolutions += level.convolutions + 1
-        p = to_numpy(level.found.pressure)
+        p = level.found.pressure
         if fresh and number < HELD:
             continue
         shape, step = fit(shape, p, before=step)

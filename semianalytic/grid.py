@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
-from semianalytic.arrays import blocks, namespace, strips, take_rows, to_numpy, total
+from semianalytic.arrays import blocks, strips, total
 
 __all__ = ["Grid", "Window", "odd", "prolong", "touches_rim", "window_around"]
 
@@ -66,7 +66,7 @@ class Grid:
     def count(self, marked: NDArray[np.bool_]) -> int:
         """Patches marked by those held on a window."""
         w = self.weight(marked.shape)
-        return int(namespace(marked).count_nonzero(marked) if w is None else w[marked].sum())
+        return int(np.count_nonzero(marked) if w is None else w[marked].sum())
 
     @property
     def window(self) -> "Window":
@@ -111,7 +111,7 @@ class Grid:
     def ringed(self, field: NDArray[Any]) -> NDArray[Any]:
         """A field with one more patch all around: 0 beyond the grid, mirrored at the axes of a quarter."""
         nx, ny = field.shape
-        ringed: NDArray[Any] = namespace(field).zeros((nx + 2, ny + 2), dtype=field.dtype)
+        ringed: NDArray[Any] = np.zeros((nx + 2, ny + 2), dtype=field.dtype)
         ringed[1:-1, 1:-1] = field
         if self.quarter:
             image = 1 + self.n % 2
@@ -148,7 +148,7 @@ class Grid:
                 gap = np.minimum(np.minimum(gap[:-2:2], gap[1:-1:2]), gap[2::2])
             else:
                 gap = _with_even_rows(gap, gap[-1:, :])
-                gap = namespace(gap).minimum(gap[::2, :], gap[1::2, :])
+                gap = np.minimum(gap[::2, :], gap[1::2, :])
             gap = gap.T
         return gap
 
@@ -202,7 +202,7 @@ def window_around(pressure: Array, source: Grid, target: Grid) -> Window:
     """Patches of the target that the contact on the source may extend to: 4 % and 3 patches beyond it."""
     edges = []
     for axis in (1, 0):
-        loaded = source.x[to_numpy(namespace(pressure).any(pressure > 0, axis=axis))]
+        loaded = source.x[np.any(pressure > 0, axis=axis)]
         low, high = loaded[0], loaded[-1]
         if target.quarter:
             high = max(-low, high)
@@ -224,7 +224,6 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     pressure [Pa], gap [m] : on the source.  window : of the target.  E_star [Pa].
     Returns p [Pa] on the window; 0 beyond the source.
     """
-    xp = namespace(pressure)
     loaded = source.ringed(pressure > 0)
     inner = loaded[2:, 1:-1] & loaded[:-2, 1:-1] & loaded[1:-1, 2:] & loaded[1:-1, :-2]
     beside = loaded[:-2, :] | loaded[1:-1, :] | loaded[2:, :]
@@ -234,36 +233,36 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     rim = loaded & ~inner
     weight = source.weight(rim.shape)
     squares = pressure[rim] ** 2
-    K2 = float(xp.mean(squares) if weight is None else np.average(squares, weights=weight[rim]))
+    K2 = float(np.mean(squares) if weight is None else np.average(squares, weights=weight[rim]))
     K2 /= 0.6 * source.d
-    level = xp.asarray(pressure, dtype=xp.float64) ** 2
+    level: Array = np.asarray(pressure, dtype=np.float64) ** 2
     # patches not next to a loaded one are never interpolated with one: any value that is not positive serves
     beside &= ~loaded
-    outside = xp.asarray(gap[beside], dtype=xp.float64)
-    level[beside] = -K2 * (xp.maximum(outside, 0.0) * (0.75 * E_star) / K2**0.5) ** (2 / 3)
+    outside = np.asarray(gap[beside], dtype=np.float64)
+    level[beside] = -K2 * (np.maximum(outside, 0.0) * (0.75 * E_star) / K2**0.5) ** (2 / 3)
     rows, columns = window.slices
     level = _linear(_linear(level, source, target.x[rows]).T, source, target.x[columns])
     for part in blocks(level):
-        level[part] = xp.sqrt(xp.maximum(level[part], 0.0))
+        level[part] = np.sqrt(np.maximum(level[part], 0.0))
     return level.T
 
 
 def touches_rim(pressure: Array, quarter: bool = False, rings: int = 1) -> bool:
     """Whether a patch of the outermost ``rings`` is loaded; two sides of a ``quarter`` belong to them."""
     rim = (pressure[-rings:, :], pressure[:, -rings:], pressure[:rings, :], pressure[:, :rings])
-    return any(bool(namespace(pressure).any(side > 0)) for side in rim[: 2 if quarter else 4])
+    return any(bool(np.any(side > 0)) for side in rim[: 2 if quarter else 4])
 
 
 def _linear(values: Array, source: Grid, x: Array) -> Array:
     """Linear interpolation along the first index, from the patch centres of the source to x; 0 beyond it."""
-    xp, (n, width) = namespace(values), values.shape
+    (n, width) = values.shape
     at = np.clip((x - source.x[0]) / source.d, 0, n - 1)
     i = np.minimum(at.astype(int), n - 2)
     t = (at - i)[:, None]
-    result: Array = xp.empty((len(x), width))
-    for part in strips(len(x), width, xp):
-        low, high = take_rows(values, i[part]), take_rows(values, i[part] + 1)
-        result[part, :] = low * xp.asarray(1 - t[part]) + high * xp.asarray(t[part])
+    result: Array = np.empty((len(x), width))
+    for part in strips(len(x), width):
+        low, high = values[i[part]], values[i[part] + 1]
+        result[part, :] = low * (1 - t[part]) + high * t[part]
     result[: np.searchsorted(x, -source.half_width), :] = 0.0
     result[np.searchsorted(x, source.half_width, side="right") :, :] = 0.0
     return result
@@ -271,4 +270,4 @@ def _linear(values: Array, source: Grid, x: Array) -> Array:
 
 def _with_even_rows(a: Array, below: Array) -> Array:
     """An array of an even number of rows, ``below`` the last one where that is odd."""
-    return namespace(a).concat([a, below]) if a.shape[0] % 2 else a
+    return np.concat([a, below]) if a.shape[0] % 2 else a

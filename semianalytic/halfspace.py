@@ -22,12 +22,11 @@ K. L. Johnson, Contact Mechanics, Cambridge University Press, 1985, sections 3.2
 """
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic.arrays import at_once, namespace
+from semianalytic.arrays import BLOCK
 
 __all__ = [
     "point_displacement",
@@ -64,7 +63,7 @@ def _points(normal: Field, shear: Field, x: Array, y: Array, z: Array, nu: float
     return np.array([of_normal, shear(x, y, z, nu) if tangential else np.zeros_like(of_normal)])
 
 
-def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.0, xp: Any = np) -> Array:
+def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.0) -> Array:
     """Potential V of a rectangle at the centres of a grid of rectangles.
 
         V(i dx, j dy, depth),  i = 0..nx-1, j = 0..ny-1;   u_z = (1-nu)/(2 pi G) V at depth 0
@@ -73,23 +72,23 @@ def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.
     share it. Beyond, 1/rho and its even derivatives of orders 2, 4 times the moments of the rectangle: no
     cancellation, within 5e-12 of every entry however large the table.
 
-    nx, ny : entries.  dx, dy, depth [m].  xp : namespace of the result.  Returns V [m], shape (nx, ny).
+    nx, ny : entries.  dx, dy, depth [m].  Returns V [m], shape (nx, ny).
     """
-    V: Array = xp.empty((nx, ny))
+    V: Array = np.empty((nx, ny))
     reach = np.sqrt(max((FAR * max(dx, dy)) ** 2 - depth**2, 0.0))
     mx, my = min(int(np.ceil(reach / dx)), nx), min(int(np.ceil(reach / dy)), ny)
-    X = (xp.arange(mx + 1, dtype=xp.float64) - 0.5) * dx
-    Y = (xp.arange(my + 1, dtype=xp.float64) - 0.5) * dy
-    corner = _potential_corner(X[:, None], Y[None, :], xp.asarray(depth, dtype=xp.float64))
+    X = (np.arange(mx + 1, dtype=np.float64) - 0.5) * dx
+    Y = (np.arange(my + 1, dtype=np.float64) - 0.5) * dy
+    corner = _potential_corner(X[:, None], Y[None, :], np.array(depth))
     column = corner[1:, :] - corner[:-1, :]
     V[:mx, :my] = column[:, 1:] - column[:, :-1]
-    y = xp.arange(ny, dtype=xp.float64) * dy
-    rows = max(1, at_once(xp) // ny)
+    y = np.arange(ny, dtype=np.float64) * dy
+    rows = max(1, BLOCK // ny)
     symmetric = nx == ny and dx == dy
     for begin, end, first in ((0, mx, my), (mx, nx, 0)):
         for i in range(begin, end, rows):
             j = min(i + rows, end)
-            x = xp.arange(i, j, dtype=xp.float64) * dx
+            x = np.arange(i, j, dtype=np.float64) * dx
             left = max(first, i) if symmetric else first
             V[i:j, left:] = _potential_series(x[:, None], y[None, left:], depth, dx, dy)
             if symmetric and i >= mx:  # V(x, y) = V(y, x)
@@ -111,23 +110,21 @@ def _potential_series(x: Array, y: Array, z: float, dx: float, dy: float) -> Arr
     ):
         sum_ *= s
         sum_ += cx * x2 + (cy * y2 + c)
-    sum_ *= namespace(s).sqrt(s)
+    sum_ *= np.sqrt(s)
     sum_ *= dx * dy
     return sum_
 
 
 def _lengths(X: Array, Y: Array, z: Array) -> tuple[Array, Array, Array]:
     """rho, X^2 + z^2 and Y^2 + z^2, floored."""
-    xp = namespace(X)
-    sx, sy = xp.maximum(X * X + z * z, TINY), xp.maximum(Y * Y + z * z, TINY)
-    return xp.sqrt(xp.maximum(sx + Y * Y, TINY)), sx, sy
+    sx, sy = np.maximum(X * X + z * z, TINY), np.maximum(Y * Y + z * z, TINY)
+    return np.sqrt(np.maximum(sx + Y * Y, TINY)), sx, sy
 
 
 def _potential_corner(X: Array, Y: Array, z: Array) -> Array:
     """V."""
-    xp = namespace(X)
     rho, sx, sy = _lengths(X, Y, z)
-    V: Array = X * xp.asinh(Y / xp.sqrt(sx)) + Y * xp.asinh(X / xp.sqrt(sy)) - z * xp.atan2(X * Y, z * rho)
+    V: Array = X * np.asinh(Y / np.sqrt(sx)) + Y * np.asinh(X / np.sqrt(sy)) - z * np.atan2(X * Y, z * rho)
     return V
 
 

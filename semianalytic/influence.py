@@ -22,14 +22,13 @@ plain      M/k times the transform of the patch, aliases summed, FFT on an enlar
 
 from collections.abc import Callable
 from math import isqrt
-from typing import Any
 
 import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import halfspace
-from semianalytic.arrays import at_once, namespace, strips
+from semianalytic.arrays import BLOCK, strips
 from semianalytic.inputs import Body, Numerics
 from semianalytic.response import Response
 
@@ -42,28 +41,26 @@ DIGITS = 1e-11  # tolerance of the quadrature over a patch, relative to the valu
 SMOOTH = 12.0  # patches from the nearest singularity, beyond which finite differences average a patch
 
 
-def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics, xp: Any = np) -> Array:
+def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Array:
     """Influence coefficients K [m/Pa] of the surface displacement by the conversion of ``numerics``.
 
     With an elastic ball, of the approach of both surfaces: u_z of the flat plus that of the ball.
 
-    n : offsets 0..n-1.  d : side of the patches [m].  xp : namespace of the result, which computes it by the
-    conversion "split"; by another one NumPy does.  Returns shape (n, n), even in both indices.
+    n : offsets 0..n-1.  d : side of the patches [m].
+    Returns shape (n, n), even in both indices.
     """
-    if xp is not np and numerics.conversion != "split":
-        return xp.asarray(surface_coefficients(n, d, body, numerics))
     both, enlarge, threads = body.response, numerics.enlarge, numerics.threads
     if numerics.conversion == "plain":
         excess = both.excess if both else np.zeros_like
         K = plain_coefficients(n, d, excess, enlarge=enlarge, threads=threads)
     else:
-        K = halfspace.surface_deflection(n, n, d, d, xp=xp)
+        K = halfspace.surface_deflection(n, n, d, d)
         if both:
             enlarge = enlarge if numerics.conversion == "split-fft" else 0
             points = numerics.hankel_points
-            K += remainder_coefficients(n, d, both, points=points, enlarge=enlarge, threads=threads, xp=xp)
+            K += remainder_coefficients(n, d, both, points=points, enlarge=enlarge, threads=threads)
             c, b = both.image
-            of_image = halfspace.surface_deflection(n, n, d, d, b, xp)
+            of_image = halfspace.surface_deflection(n, n, d, d, b)
             of_image *= c
             K += of_image
     K *= 1 / (np.pi * body.contact_modulus)
@@ -78,7 +75,6 @@ def remainder_coefficients(
     points: int = 4096,
     enlarge: int = 0,
     threads: int = 1,
-    xp: Any = np,
 ) -> Array:
     """Integral over a patch of the part of g(r) not due to Love's rectangle and its image.
 
@@ -87,7 +83,7 @@ def remainder_coefficients(
     n : offsets 0..n-1.  d : side of the patches [m].  response : of the surface, with R and its image.
     points : of the logarithmic Hankel grid.
     enlarge : 0 for the Hankel transform; else the factor by which the domain of a two-dimensional FFT
-    exceeds the kernel's (conversion "split-fft", by NumPy).  xp : namespace of the result.
+    exceeds the kernel's (conversion "split-fft", by NumPy).
     Returns [m], shape (n, n), even in both indices.
     """
     if enlarge:
@@ -100,11 +96,11 @@ def remainder_coefficients(
 
     g, on_disc = response.radial(points)
     near = 2 * response.first / d  # g is singular no nearer than the image of the surface, at depth 2 h
-    mean = _average(_average(_octant(g, n + 3, d, xp)).T).T[:n, :n]
+    mean = _average(_average(_octant(g, n + 3, d)).T).T[:n, :n]
     mean *= d * d
     if near < SMOOTH:
         corner = _corner(g, on_disc, min(int(SMOOTH), n), d, near)
-        mean[: len(corner), : len(corner)] = xp.asarray(corner)
+        mean[: len(corner), : len(corner)] = corner
     return mean
 
 
@@ -162,14 +158,13 @@ def _by_fft(
     return quadrant[:n, :n] * (2 * np.pi / (m * m))
 
 
-def _octant(g: Callable[[Array], Array], n: int, d: float, xp: Any) -> Array:
+def _octant(g: Callable[[Array], Array], n: int, d: float) -> Array:
     """g at the patch centres, computed in blocks of rows, in each up to its diagonal."""
-    table: Array = xp.empty((n, n))
-    i, end = xp.arange(n, dtype=xp.float64), 0
-    numbers = at_once(xp)
+    table: Array = np.empty((n, n))
+    i, end = np.arange(n, dtype=np.float64), 0
     while end < n:
-        begin, end = end, min(n, end + max(1, numbers // (end + isqrt(numbers))))
-        block = g(d * xp.hypot(i[begin:end, None], i[None, :end]))
+        begin, end = end, min(n, end + max(1, BLOCK // (end + isqrt(BLOCK))))
+        block = g(d * np.hypot(i[begin:end, None], i[None, :end]))
         table[begin:end, :end] = block
         table[:end, begin:end] = block.T
     return table
@@ -188,10 +183,10 @@ def _average(table: Array) -> Array:
     ):
         weights += factor * np.array(row)
     first, *others = weights.tolist()
-    xp, n = namespace(table), table.shape[0] - 3
-    for columns in strips(table.shape[1], table.shape[0], xp):
+    n = table.shape[0] - 3
+    for columns in strips(table.shape[1], table.shape[0]):
         strip = table[:, columns]
-        rows = xp.concat([strip[3:0:-1, :], strip])
+        rows = np.concat([strip[3:0:-1, :], strip])
         mean = rows[3 : n + 3, :] * first
         for j, weight in enumerate(others, start=1):
             mean += weight * (rows[3 - j : n + 3 - j, :] + rows[3 + j : n + 3 + j, :])

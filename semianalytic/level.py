@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import contact, convolution, influence, prescribed, smooth_edge
-from semianalytic.arrays import copy, namespace, to_numpy
 from semianalytic.edge_shape import Shape
 from semianalytic.grid import Grid, Window, prolong
 from semianalytic.inputs import Body, Numerics
@@ -81,11 +80,9 @@ class Level:
         d = self.grid.d
         if self.shape is not None:
             return SMOOTH * len(self.shape.coefficients) * d * d / min(self.shape.axes)
-        whole, count = self.grid.whole(self.found.pressure), namespace(self.found.pressure).count_nonzero
-        touching = replace(self.grid, quarter=False).ringed(whole > 0)
-        edges = int(count(touching[1:, :] ^ touching[:-1, :])) + int(
-            count(touching[:, 1:] ^ touching[:, :-1])
-        )
+        loaded = self.grid.whole(self.found.pressure) > 0
+        touching = replace(self.grid, quarter=False).ringed(loaded)
+        edges = sum(int(np.count_nonzero(np.diff(touching, axis=axis))) for axis in (0, 1))
         return float(np.pi / 4 * edges * d * 0.25 * d / (2 * np.pi * self.radius))
 
     @property
@@ -94,15 +91,6 @@ class Level:
         whole, found = self.grid.whole, self.found
         found = replace(found, pressure=whole(found.pressure), gap=whole(found.gap))
         return replace(self, grid=replace(self.grid, quarter=False), found=found)
-
-    @property
-    def in_numpy(self) -> "Level":
-        """The same contact in arrays of NumPy."""
-        found = self.found
-        if isinstance(found.pressure, np.ndarray):
-            return self
-        found = replace(found, pressure=to_numpy(found.pressure), gap=to_numpy(found.gap))
-        return replace(self, found=found)
 
     @cached_property
     def scalars(self) -> dict[str, float]:
@@ -115,7 +103,7 @@ class Level:
     @property
     def _peak(self) -> float:
         """Of the patches, continued between their centres."""
-        peak = float(namespace(self.found.pressure).max(self.found.pressure))
+        peak = float(np.max(self.found.pressure))
         if self.shape is not None:
             peak += _above_highest(self.grid.whole(self.found.pressure))
         return peak
@@ -188,13 +176,13 @@ class LevelProblem:
     ) -> None:
         self.grid, self.gap, self.depth, self.window, self.before = grid, gap, depth, window, before
         self.indenter, self.body, self.numerics, self.datum = indenter, body, numerics, datum
-        xp, (nx, ny) = namespace(gap), grid.across(window).shape
-        kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics, xp)[:nx, :ny]
+        (nx, ny) = grid.across(window).shape
+        kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics)[:nx, :ny]
         held, threads = grid.quarter, numerics.threads
         memory: Array | None = None
         inverse: Array | None = None
         self.work: tuple[Array, Array] | None = None
-        if not held and xp is np:
+        if not held:
             memory, inverse, self.work = _shared_memory(nx, ny, numerics.tolerance >= LOOSE)
         self.single = memory is not None and memory.dtype == np.float32
         self.deflection = convolution.even_convolution(kernel, quarter=held, threads=threads, memory=memory)
@@ -244,9 +232,8 @@ class LevelProblem:
         before = self.before
         if before is None:
             approach = self.indenter.approach or 0.25 * self.depth
-            xp = namespace(self.gap)
-            p = self.precondition(xp.maximum(xp.min(self.gap) + approach - self.gap, 0.0))
-            return copy(p, xp.float64)  # not in memory that the iteration uses
+            p = self.precondition(np.maximum(np.min(self.gap) + approach - self.gap, 0.0))
+            return np.array(p, np.float64, order="C")  # not in memory that the iteration uses
         p, g, E_star = before.found.pressure, before.found.gap, self.body.contact_modulus
         return prolong(p, g, before.grid, self.grid, self.window, E_star)
 
@@ -270,8 +257,8 @@ def _above_highest(p: Array) -> float:
 
     By differences of second order: g . H^-1 g / 2, g the slope and -H the second derivatives.
     """
-    i, j = divmod(int(namespace(p).argmax(p)), p.shape[1])
-    q = to_numpy(p[max(i - 1, 0) : i + 2, max(j - 1, 0) : j + 2])
+    i, j = divmod(int(np.argmax(p)), p.shape[1])
+    q = p[max(i - 1, 0) : i + 2, max(j - 1, 0) : j + 2]
     if q.shape != (3, 3) or not (q > 0).all():
         return 0.0
     slope = np.array([q[2, 1] - q[0, 1], q[1, 2] - q[1, 0]]) / 2

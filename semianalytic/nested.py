@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import convolution, influence
-from semianalytic.arrays import copy, namespace, to_numpy
 from semianalytic.edge_correction import corrected
 from semianalytic.grid import Grid, Window, odd, touches_rim, window_around
 from semianalytic.inputs import COARSEST, Body, Numerics
@@ -61,14 +60,14 @@ def solve_on(grid: Grid, before: Level | None, indenter: Indenter, body: Body, n
     Where the gap is even in x and in y, so are all fields, and a quarter of the grid is enough, of NumPy.
     """
     grid, gap = undeformed(replace(grid, quarter=False), indenter)
-    xp, whole = namespace(gap), grid.window
+    whole = grid.window
     datum = lowest_point(grid, gap, indenter)
-    depth = float(xp.max(gap)) - datum
+    depth = float(np.max(gap)) - datum
     if before is not None and not indenter.round:
         before = before.whole if grid.quarter < before.grid.quarter else before
         window = window_around(before.found.pressure, before.grid, grid)
         if window.shape != whole.shape:
-            lowest, gap = grid.lowest(gap), copy(gap[window.slices])
+            lowest, gap = grid.lowest(gap), np.array(gap[window.slices], order="C")
             lowest -= datum
             problem = LevelProblem(grid, gap, depth, window, before, indenter, body, numerics, datum)
             level = _solved(problem)
@@ -99,14 +98,14 @@ def undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
 
 def lowest_point(grid: Grid, gap: Array, indenter: Indenter) -> float:
     """Lowest gap on the patches and, where it is known between them, beside the lowest: by halving steps."""
-    xp, lowest = namespace(gap), float(namespace(gap).min(gap))
+    lowest = float(np.min(gap))
     if indenter.between is None:
         return lowest
-    x, y = (float(grid.x[k]) for k in divmod(int(xp.argmin(gap)), gap.shape[1]))
+    x, y = (float(grid.x[k]) for k in divmod(int(np.argmin(gap)), gap.shape[1]))
     for k in range(HALVINGS):
         step = np.array([0.0, -0.5, 0.5]) * grid.d / 2**k
         beside = [np.clip(centre + step, -grid.half_width, grid.half_width) for centre in (x, y)]
-        z = np.broadcast_to(to_numpy(indenter.between(*map(xp.asarray, beside))), (3, 3))
+        z = np.broadcast_to(indenter.between(*beside), (3, 3))
         i, j = divmod(int(z.argmin()), 3)
         x, y, lowest = float(beside[0][i]), float(beside[1][j]), min(lowest, float(z[i, j]))
     return lowest
@@ -114,8 +113,8 @@ def lowest_point(grid: Grid, gap: Array, indenter: Indenter) -> float:
 
 def _of_single_precision(level: Level) -> Level:
     """The same as a first guess, in half the memory."""
-    found, xp = level.found, namespace(level.found.pressure)
-    pressure, gap = (xp.asarray(values, dtype=xp.float32) for values in (found.pressure, found.gap))
+    found = level.found
+    pressure, gap = (np.asarray(values, dtype=np.float32) for values in (found.pressure, found.gap))
     return replace(level, found=replace(found, pressure=pressure, gap=gap))
 
 
@@ -144,9 +143,9 @@ def is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics: 
         return False
     merged = grid.merged(p)
     n = 2 * len(merged) - grid.n % 2 if grid.quarter else merged.shape[0]
-    kernel = influence.surface_coefficients(n, 2 * grid.d, body, numerics, namespace(p))
+    kernel = influence.surface_coefficients(n, 2 * grid.d, body, numerics)
     g = convolution.even_convolution(kernel, quarter=grid.quarter, threads=numerics.threads)(merged)
     g += lowest
     g -= level.found.approach
     g[grid.merging(window).slices] = np.inf
-    return bool(namespace(g).min(g) > 0)
+    return bool(np.min(g) > 0)

@@ -23,7 +23,6 @@ from scipy.fft import fht, fhtoffset
 from scipy.interpolate import CubicSpline, PPoly, make_interp_spline
 
 from semianalytic import frf
-from semianalytic.arrays import namespace
 
 __all__ = ["Layers", "Response", "compliance_excess", "response"]
 
@@ -131,14 +130,12 @@ class Response:
         x = np.log(r[keep])
         spline = CubicSpline(x, A[keep] / r[keep])
         inner = CubicSpline(x, A[keep] * r[keep]).antiderivative()
-        far_g = _of_any_library(spline, float(step))
 
         def g(r: Array) -> Array:
-            xp = namespace(r)
             s = (r / 2) ** 2
             small = m0 - s * (m1 - s * (m2 / 4 - s * m3 / 36))
-            large = xp.where(r < far, far_g(xp.log(xp.clip(r, near, far))), 0.0)
-            return xp.where(r < near, small, large)
+            large = np.where(r < far, spline(np.log(np.clip(r, near, far))), 0.0)
+            return np.where(r < near, small, large)
 
         def on_disc(r: Array) -> Array:
             s = (np.minimum(r, near) / 2) ** 2
@@ -146,22 +143,3 @@ class Response:
             return small + inner(np.log(np.clip(r, near, far))) - inner(np.log(near))
 
         return g, on_disc
-
-
-def _of_any_library(spline: CubicSpline, step: float) -> Function:
-    """The spline, whose knots are equidistant by ``step``, of an array of any library."""
-
-    def value(x: Array) -> Array:
-        xp = namespace(x)
-        if xp is np:
-            return spline(x)
-        flat = xp.reshape(x, (-1,))
-        at = xp.floor((flat - float(spline.x[0])) / step)
-        i = xp.asarray(xp.clip(at, 0.0, float(len(spline.x) - 2)), dtype=xp.int64)
-        t = flat - xp.take(xp.asarray(spline.x), i, axis=0)
-        sum_ = xp.zeros_like(t)
-        for coefficients in spline.c:
-            sum_ = sum_ * t + xp.take(xp.asarray(coefficients), i, axis=0)
-        return xp.reshape(sum_, x.shape)
-
-    return value

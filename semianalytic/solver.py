@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import contact, convolution, influence, nested, prescribed, uncertainty
-from semianalytic.arrays import check_namespace, namespace
 from semianalytic.contact import NotConverged
 from semianalytic.grid import Grid, odd, touches_rim
 from semianalytic.indenter_profile import Shape, profile_of
@@ -216,7 +215,6 @@ def indent(
     edge_correction: bool = True,
     estimate_uncertainty: bool = True,
     threads: int = 1,
-    array_namespace: Any = None,
 ) -> Solution:
     """Press an indenter of any shape into a coated half-space, over a fixed square.
 
@@ -235,10 +233,6 @@ def indent(
 
     Heights that are even in x and in y to the last digit are solved on a quarter of the square.
 
-    array_namespace : a module with the functions of the Python array API standard, such as ``cupy``, on whose
-    arrays the contact is solved, on a GPU; z is then called with its arrays. By default that of the heights,
-    NumPy for z(x, y). The edge is fitted by NumPy. The solution's arrays are of NumPy.
-
     Raises ValueError for input without meaning, NotConverged when the iteration stops short.
     """
     began = time.perf_counter()
@@ -246,12 +240,10 @@ def indent(
     check_positive(half_width=half_width)
     check_truth_value(edge_correction=edge_correction)
     body = _body(coatings, substrate, friction, ball)
-    xp = namespace(profile) if array_namespace is None else array_namespace
-    check_namespace(xp)
-    heights = None if callable(profile) else xp.asarray(profile, dtype=xp.float64)
+    heights = None if callable(profile) else np.asarray(profile, dtype=np.float64)
     if heights is not None:
         patches = heights.shape[0]
-        if heights.shape != (patches, patches) or not xp.all(xp.isfinite(heights)):
+        if heights.shape != (patches, patches) or not np.all(np.isfinite(heights)):
             raise ValueError(f"profile of shape {heights.shape}; give finite heights on n x n patches")
     numerics = Numerics(
         patches=patches,
@@ -266,16 +258,15 @@ def indent(
 
     def on_mesh(x: Array, y: Array) -> Array:
         assert callable(profile)
-        z: Array = xp.asarray(profile(x[:, None], y[None, :]), dtype=xp.float64)
+        z: Array = np.asarray(profile(x[:, None], y[None, :]), dtype=np.float64)
         return z
 
     def gap(grid: Grid) -> Array:
         if heights is not None:
             z = grid.sample(heights, half_width)
         else:
-            x = xp.asarray(grid.x)
-            z = xp.broadcast_to(on_mesh(x, x), (grid.n, grid.n))
-            if not np.isfinite(float(xp.min(z))) or not np.isfinite(float(xp.max(z))):
+            z = np.broadcast_to(on_mesh(grid.x, grid.x), (grid.n, grid.n))
+            if not np.isfinite([z.min(), z.max()]).all():
                 raise ValueError("profile(x, y) must return finite heights [m] all over the square")
         return z
 
@@ -288,7 +279,7 @@ def indent(
             "the profile as an array if it has no surface beyond"
         )
     estimate = uncertainty.of_contact(levels, indenter, body, numerics) if estimate_uncertainty else None
-    return Solution.of_levels([level.in_numpy for level in levels[-3:]], body, estimate, began)
+    return Solution.of_levels(levels[-3:], body, estimate, began)
 
 
 def solve_prescribed(

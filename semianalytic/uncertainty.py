@@ -6,7 +6,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from semianalytic import convolution, influence
-from semianalytic.arrays import namespace
 from semianalytic.grid import odd
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level
@@ -153,11 +152,11 @@ def _by_other_coefficients(
     if numerics.conversion == "split" and (wider > 1 or not any(one.coatings for one in body.pair)):
         return none  # coefficients in closed form, or computed without a box
     grid, p = level.grid, level.found.pressure
-    xp, n = namespace(p), level.grid.n
-    dK = influence.surface_coefficients(odd(wider * n), grid.d, body, other, xp)[:n, :n]
-    dK = dK - influence.surface_coefficients(n, grid.d, body, numerics, xp)
+    n = level.grid.n
+    dK = influence.surface_coefficients(odd(wider * n), grid.d, body, other)[:n, :n]
+    dK = dK - influence.surface_coefficients(n, grid.d, body, numerics)
     e = convolution.even_convolution(dK, quarter=grid.quarter)(p)[p > 0]
-    low, high = float(xp.min(e)), float(xp.max(e))
+    low, high = float(np.min(e)), float(np.max(e))
     share = (high - low) / level.found.approach
     return {
         "contact_radius": share * level.radius,
@@ -175,10 +174,10 @@ def _of_iteration(level: Level, indenter: Indenter) -> dict[str, float]:
     """
     found = level.found
     left = min(found.left, level.noise)
-    xp, gap = namespace(found.gap), 0.0
+    gap = 0.0
     if indenter.approach is None:
-        gap = float(xp.max(xp.abs(found.gap[found.pressure > 0])))
-    peak = float(xp.max(found.pressure))
+        gap = float(np.max(np.abs(found.gap[found.pressure > 0])))
+    peak = float(np.max(found.pressure))
     return {"contact_radius": level.radius * left / peak, "approach": gap, "peak_pressure": left}
 
 
