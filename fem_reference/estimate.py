@@ -254,10 +254,10 @@ def contact_estimates(
         coarse = ElasticState.of_contact(state.solid, companion, body)
         found.append(estimates(state, coarse, units, changes, load_residual, abs(edge), size, states))
     truncation = sum(state.truncation(0)[0] for state in states) / final.approach
-    stiffness = (
-        _factors(final.discretisation.order, size)[1] * abs(final.stiffness - companion.stiffness)
-        + (load_residual + truncation) * final.stiffness
-    )
+    # both are compliances; the difference of one of them may be zero by chance
+    change = max(abs(1 - companion.stiffness / final.stiffness), changes[1] / final.approach)
+    functional = _factors(final.discretisation.order, size)[1]
+    stiffness = (functional * change + load_residual + truncation) * final.stiffness
     return tuple(found), float(stiffness * units.load / units.displacement)
 
 
