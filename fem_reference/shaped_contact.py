@@ -71,6 +71,7 @@ class ShapedContact(PressedSolid):
     uncertainty: Uncertainty | None
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
+    element_width: float = field(repr=False)
     stiffness: float | None = None
     stiffness_uncertainty: float | None = None
 
@@ -79,7 +80,30 @@ class ShapedContact(PressedSolid):
     ) -> tuple[np.ndarray, np.ndarray]:
         """As of ``PressedSolid``, with the error of the pressure."""
         s, U = super().stress_with_uncertainty(x, y, z, layer, uncertainty)
-        return s, np.maximum(SAFETY * U, self._typical) + self._floor if uncertainty else U
+        if not uncertainty:
+            return s, U
+        smeared = np.where(np.asarray(z) == 0, self._smeared(x, y), 0.0)
+        return s, np.maximum(SAFETY * U, self._typical) + self._floor + smeared
+
+    def _smeared(self, x: Any, y: Any) -> np.ndarray:
+        """What the elements may smear of the stress on the surface [Pa], where the pressure has its root.
+
+        Along the surface the strain below a pressure is -(1 + nu)(1 - 2 nu)/E of it, so the stress changes by
+        (1 - 2 nu)/(1 - nu) of what the pressure differs from the cubic through its values half an element's
+        width and a width on either side.
+        """
+        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        h, nu = self.element_width / 2, self._fine.compliance.solid.materials[0][1]
+        missed = []
+        for i, j in ((h, 0.0), (0.0, h)):
+            for beside in (-0.5, 0.0, 0.5):  # it changes sign next to the edge
+                p, near, far = (
+                    self.pressure(x + (beside + k) * i, y + (beside + k) * j)
+                    + self.pressure(x + (beside - k) * i, y + (beside - k) * j)
+                    for k in (0, 1, 2)
+                )
+                missed.append(np.abs((4 * near - far) / 6 - p / 2))
+        return (1 - 2 * nu) / (1 - nu) * np.max(missed, axis=0)
 
     @cached_property
     def _typical(self) -> float:
@@ -167,7 +191,7 @@ def solve_shape(
         return height(x * reach, y * reach) / reach
 
     def on_mesh(coarser: float, begin: StarPressure) -> tuple[OffAxisFields, Corrected, np.ndarray]:
-        d = discretised(solid, coarser * size, coarser * surface, order, growth=1.0)
+        d = discretised(solid, coarser * size, coarser * surface, order, growth=0.8)
         compliance = harmonic_compliance(solid, d, harmonics, fold)
         found = corrected(compliance, begin, scaled_height, load / unit.load)
         if not found.converged:
@@ -224,6 +248,7 @@ def solve_shape(
         uncertainty=uncertainty,
         extent_uncertainty=extents,
         height=height,
+        element_width=surface * reach,
     )
 
 

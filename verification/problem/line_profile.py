@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import BALL, FLAT, CoatedContact
 
+EDGE_LINE = "surface near the edge"  # of a contact that is no disc
 ON_BALL = f"{BALL}, "  # before the name of a line of the ball
 _INTERFACE = re.compile(r"interface ([1-9]\d*), (upper|lower) side")
 
@@ -77,7 +78,7 @@ def line_of(name: str, problem: CoatedContact) -> Line:
     if name.startswith(ON_BALL) and problem.ball is not None:
         there = line_of(name.removeprefix(ON_BALL), problem.seen_from(BALL))
         return replace(there, name=name, body=BALL)
-    if name == "surface":
+    if name == "surface" or (name == EDGE_LINE and problem.indenter is not None):
         return Line(name, 0.0, 0)
     if name == "axis":
         return Line(name, None, None, direction=(0.0, 0.0, 1.0))
@@ -103,6 +104,7 @@ def lines_of(problem: CoatedContact) -> tuple[Line, ...]:
     for body in problem.bodies:
         before = ON_BALL if body == BALL else ""
         names += [f"{before}surface", f"{before}axis"]
+        names += [EDGE_LINE] if problem.indenter is not None else []
         for k in range(1, len(problem.seen_from(body).coatings) + 1):
             names += [f"{before}interface {k}, upper side", f"{before}interface {k}, lower side"]
     return tuple(line_of(name, problem) for name in names)

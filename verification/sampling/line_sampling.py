@@ -16,7 +16,7 @@ from verification.problem.coated_contact import (
     stress_with_uncertainty,
 )
 from verification.problem.either_body import on_body
-from verification.problem.line_profile import Line, Profile, line_of
+from verification.problem.line_profile import EDGE_LINE, Line, Profile, line_of
 from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.sampling import oblique_sampling
 from verification.sampling.largest_tension import BESIDE, ENDS, Search, around_edge, edge_uncertainty
@@ -38,9 +38,10 @@ def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> t
     return tuple(found)
 
 
-# Of a, around the edge of a contact that is no disc: no point there. Its edge crosses the rings of the
-# meridian mesh, so that the uncertainty of the elements exceeds the caps nearer to it.
+# Of a, around the edge of a contact that is no disc: no point there but on ``EDGE_LINE``. The edge crosses
+# the rings of the meridian mesh, so that the uncertainty of the elements exceeds the caps nearer to it.
 CLEAR = 0.3
+BESIDE_SHAPED = np.array([0.0, 0.01, 0.03, 0.08, 0.15, 0.25])  # of a, either side of it on ``EDGE_LINE``
 SHAPED = 21  # points on either side of x = 0, of rings about which there are no tables
 
 
@@ -75,6 +76,9 @@ def positions(
     def along(line: Line) -> Array:
         if line.coordinate == "z":
             return z[line.body]
+        if line.name == EDGE_LINE:
+            ends = np.array(_edges(first, nodes))[:, None]
+            return np.unique(np.concatenate([ends + BESIDE_SHAPED * a, ends - BESIDE_SHAPED * a]))
         if line.depth is None:
             at = oblique_sampling.positions(problem, line, a, getattr(first, "nodes", nodes))
             return _clear_of_edges(first, line, at, CLEAR * a) if shaped else at
@@ -83,6 +87,19 @@ def positions(
         return surface if line.depth == 0 else x
 
     return {line: along(line) for line in lines}
+
+
+def _edges(solution: Solution, x: Array) -> list[float]:
+    """Where on y = 0 the contact begins or ends [m], found between the places x [m]."""
+    least = 1e-6 * solution.peak_pressure
+    loaded = solution.pressure(x) > least
+    low, high = (x[side][loaded[1:] != loaded[:-1]] for side in (slice(None, -1), slice(1, None)))
+    begins = solution.pressure(high) > least
+    for _ in range(40):
+        middle = (low + high) / 2
+        same = (solution.pressure(middle) > least) == begins
+        low, high = np.where(same, low, middle), np.where(same, middle, high)
+    return list(np.where(begins, high, low))
 
 
 def _clear_of_edges(solution: Solution, line: Line, at: Array, distance: float) -> Array:
@@ -164,7 +181,7 @@ def sample(
         Profile(name, line.name, position, value, source, None if U is None else U[component])
         for name, value, U, component in found
     ]
-    if line.name == "surface":  # the pressure is that of both bodies
+    if line.name in ("surface", EDGE_LINE):  # the pressure is that of both bodies
         spread = np.array(solution.pressure_uncertainty(x)) if stated else None
         if spread is not None and around.size:
             edges, edges_U = solution.pressure(around), solution.pressure_uncertainty(around)

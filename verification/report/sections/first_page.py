@@ -137,7 +137,9 @@ def left_out(material: Material) -> tuple[float, int]:
     """The widest zone at the contact edge that is not judged [% of a], and the number of comparisons with
     one."""
     zones = [
-        CLEAR if result.problem.get("indenter") and claim.line != "contact" else claim.edge
+        CLEAR
+        if result.problem.get("indenter") and claim.line in ("off plane", "oblique", "oblique surface")
+        else claim.edge
         for result in material.results
         for claim, _ in result.verdicts
     ]
