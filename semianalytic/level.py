@@ -22,6 +22,7 @@ Array = NDArray[np.floating]
 SINGLE = 2**20  # patches, above which preconditioner and steps are of single precision,
 SMOOTH = 0.01  # error of the radius at a smooth edge, over M d^2/a with M polynomials: observed at most 0.005
 RIPPLE = 3e-4  # of the peak pressure
+SAMPLED, FAR_INSIDE = 65, 0.6  # patches along a side, and 1 - (r/a)^2, for the misfit inside
 LOOSE = 1e-8  # at this tolerance or above: the iterations were measured to be as many; at 1e-12 more
 
 
@@ -125,6 +126,21 @@ class Level:
         edge, inner = self.edge, self.edge.inner
         rest = (self.found.pressure[edge.i, edge.j] - edge.centre)[inner]
         return float(np.sqrt(np.mean(rest**2))) if rest.size else 0.0
+
+    @cached_property
+    def misfit(self) -> float:
+        """Largest difference of the pressure of the patches from that of the shape [Pa], far from the edge.
+
+        On some patches, the middle one included. 0 where ``rest`` holds it.
+        """
+        if self.shape is None or self.rest is not None:
+            return 0.0
+        step = max(1, self.grid.n // SAMPLED)
+        some = slice((len(self.grid.x) // 2 if not self.grid.quarter else 0) % step, None, step)
+        x, p = self.grid.x[some], self.found.pressure[some, some]
+        deep = self.shape.inside(x[:, None], x[None, :]) > FAR_INSIDE
+        miss = np.abs(p - self.shape.pressure(x[:, None], x[None, :]))[deep]
+        return float(miss.max(initial=0.0))
 
     @property
     def nodes(self) -> Array:

@@ -81,8 +81,8 @@ def _stiffness(beside: Neighbours) -> tuple[float, float | None]:
     if beside.uncertainty is None:
         return stiffness, None
     error = abs(slope - slopes[0]) / slope + abs(beside.approach / level.found.approach - 1)
-    # those of the approaches, over the largest of their differences
-    error += beside.uncertainty / beside.approach / float(np.log1p(STEPS[-1]))
+    # those of the approaches, over the smaller of their differences, whose slope has the larger weight
+    error += beside.uncertainty / beside.approach / float(np.log1p(STEPS[0]))
     return stiffness, stiffness * error
 
 
