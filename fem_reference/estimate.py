@@ -102,7 +102,7 @@ class StressEstimate(Uncached):
 
     factor, moved : multiply the largest differences of stress and displacement from the companion
     radius_error : uncertainty of the contact radius
-    relative : added in proportion to the stress, for errors of the load
+    relative : added in proportion to the largest stress of the layer, for errors of load and of compliance
     everywhere : added at every point, for the truncation of the half-space
     far : the same of displacements
     """

@@ -30,17 +30,20 @@ EVALUATION = (5e-6, 5e-7)
 RINGS = 2e-8  # likewise on rings
 NEAR = 8.0  # patches from the edge, within which the error of its radius is felt
 # of fields under a smooth edge, inside and next to the edge: times the last change, times the change before
-INSIDE, AT_EDGE = (2.5, 0.4), (5.0, 1.0)  # where the patches were halved; see ``_change``
+INSIDE, AT_EDGE = (4.0, 0.8), (8.0, 2.0)
 # what the refinement of a smooth edge does not show: of the root mean square of the change of the pressure,
 # and of the peak pressure; felt to a depth of some patches
 FLOOR, REACH = (0.35, 6e-7), 8.0
 DEFLECTED = 0.2  # of that floor over the peak pressure, that the displacement over the approach feels
 # deep down a stress follows the moments of the pressure, the second one a^2 at a given load: share of the
 # relative uncertainty of a, 5 times its error in the median; in full below as many patches
-DEEP = 0.3, 32.0
+DEEP = 0.15, 32.0
 # likewise near the edge, of the ripple of the patches, which the shape averages, and of the largest change
 # there; within some patches of it
 RIPPLE, WANDERING, TAPER = 0.9, 1.0, 16.0
+MISFIT = (
+    2.0  # times the misfit of the shape inside, where that is more; falling as the square of the distance
+)
 RESOLUTION = 1e-7  # of the pressure of patches: its response to the gap the iteration leaves
 
 
@@ -347,7 +350,7 @@ class Solution:
                 scale = self._scale + DEEP[0] * deep * self.uncertainty.contact_radius / self.contact_radius
                 total = total + least * shallow + np.abs(sigma).max(axis=(0, 1)) * scale
                 distant = (np.square(x) + np.square(y) + np.square(z)) / self.contact_radius**2
-                total = total + self._level.misfit / (1 + distant)
+                total = np.maximum(total, MISFIT * self._level.misfit / (1 + distant))
                 if not self.relative:
                     total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer))
             total = total + RINGS * self.peak_pressure
@@ -366,12 +369,7 @@ class Solution:
         return self.uncertainty.peak_pressure / self.peak_pressure
 
     def _change(self, last: Array, before: Array, x: ArrayLike, y: ArrayLike) -> Array:
-        """Error by the patch size from the last change and the one before.
-
-        Of second order: of patches that were not halved the error left is a larger part of the last change.
-        """
-        finer = len(self.nodes) / len(self._levels[1].nodes)
-        rate = max(1.0, 3 / (finer**2 - 1))
+        """Error by the patch size from the last change and the one before."""
         share: Array | float = 0.0
         if self._level.shape is not None:
             near = self._to_edge(x, y) / (2 * self.diagnostics.patch_size)
@@ -379,7 +377,7 @@ class Solution:
         of_last, of_before = (
             inside + (edge - inside) * share for inside, edge in zip(INSIDE, AT_EDGE, strict=True)
         )
-        change: Array = np.maximum(rate * of_last * last, of_before * before)
+        change: Array = np.maximum(of_last * last, of_before * before)
         return change
 
     def _near_ripple(self, x: ArrayLike, y: ArrayLike) -> Array:
