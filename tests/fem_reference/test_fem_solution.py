@@ -208,7 +208,8 @@ def test_each_cause_adds_to_the_uncertainty():
     assert load.normal.relative - none.normal.relative == pytest.approx(1.5e-3)
     assert edge.normal.radius_error - none.normal.radius_error == pytest.approx(SAFETY * 1e-3)
     assert size.normal.radius_error > none.normal.radius_error
-    assert size.normal.relative - none.normal.relative > size.normal.radius_error - none.normal.radius_error
+    assert size.pollution > none.pollution == 0
+    assert size.normal.everywhere - none.normal.everywhere == pytest.approx(size.pollution)
 
 
 def test_each_part_of_the_estimate_adds_to_that_of_stress_and_displacement():
