@@ -138,7 +138,7 @@ def left_out(material: Material) -> tuple[float, int]:
     one."""
     zones = [
         CLEAR
-        if result.problem.get("indenter") and claim.line in ("off plane", "oblique", "oblique surface")
+        if result.problem.get("indenter") and claim.line.startswith(("off plane", "oblique", "interface"))
         else claim.edge
         for result in material.results
         for claim, _ in result.verdicts
