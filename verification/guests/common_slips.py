@@ -125,7 +125,7 @@ def _near_edge(result: CaseResult) -> dict[str, NDArray[np.bool_]]:
 
 
 def _along_x(line: str) -> bool:
-    return line.removeprefix(ON_BALL).startswith(("surface", "interface", "off plane"))
+    return line.removeprefix(ON_BALL).startswith(("surface", "interface"))
 
 
 def _slips(
