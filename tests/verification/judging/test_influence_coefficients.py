@@ -19,7 +19,7 @@ POOR = {
         "semianalytic.influence:surface_coefficients", "K *= 1 / (np.pi", "K *= 1.01 / (np.pi"
     ),
     "an image twice as deep": Edit(
-        "semianalytic.influence:surface_coefficients", "d, d, b, xp)", "d, d, 2 * b, xp)"
+        "semianalytic.influence:surface_coefficients", "d, d, b)", "d, d, 2 * b)"
     ),
     "a domain too small": Edit(
         "semianalytic.response:Response._transformed",
