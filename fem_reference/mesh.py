@@ -192,12 +192,12 @@ def _triangulate(
         growth = f"(1+{_literal(_GROWTH * bare / near)}*Max(0,{rho}-{_literal(near)}))"
         fan = f"{_literal(grading.edge_rate)}*{rho}^{_literal(_FAN)}"
         origin = f"Sqrt((x-({_literal(xi[0])}))^2+y*y)"
-        far = _literal(grading.far_size)
+        distant = _literal(grading.far_size)
         if grading.surface:  # fine below the pressure alone
-            far = f"{far}*(1+0.2*Max(0,{rho}-{_literal(bare)}))"
+            distant = f"{distant}*(1+0.2*Max(0,{rho}-{_literal(bare)}))"
         sizes = [
             f"{fan}+{_literal(grading.edge_size * scale)}",
-            f"Min({far},{_literal(grading.size)}*{growth})",
+            f"Min({distant},{_literal(grading.size)}*{growth})",
             # p(0) has no neighbours on its other side: finer triangles at the point of first contact
             f"{_literal(grading.axis_size)}+0.3*{origin}",
         ]
