@@ -30,9 +30,8 @@ from .scaling import LayeredSolid
 __all__ = ["HarmonicCompliance", "harmonic_compliance"]
 
 DIRECT = 8  # harmonics below are solved one by one
-FELT = (
-    4.0  # contact radii from the axis beyond which these vanish: like the power m + 1 of the distance, 4e-6
-)
+# contact radii from the axis beyond which higher harmonics vanish: like the power m + 1 of the distance, 4e-6
+FELT = 4.0
 POINTS = 7  # of the interpolation beyond: 1e-4 of the deflection by a harmonic, 4e-7 of that of a contact
 
 
@@ -210,6 +209,4 @@ class Meridian:
             outside = [(u, Q) for u in self.solid.far_fields(1, 1.0, far)]
         for field, (u, resultant) in enumerate(outside):
             given[field * d.N + d.outer] = u[:, None] * resultant
-        for field in (0,) if m == 0 else (0, 2) if m == 1 else (0, 1, 2):
-            given[field * d.N + d.axis] = 0.0
         return self.skeleton.extended(self.factor.solve(given, load))

@@ -86,7 +86,7 @@ class _ContactSet:
         self.extension, self.mirror = problem.extension, problem.mirror
         self._dtype = work.dtype
         # what P gives only directs the steps: a thousandth is enough where these are of single precision
-        single = isinstance(work, np.ndarray) and work.dtype == np.float32
+        single = work.dtype == np.float32
         self._share = np.empty(inside.shape, dtype=np.float16 if single else work.dtype)
         self.update(inside, work)
 

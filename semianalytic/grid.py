@@ -165,11 +165,7 @@ class Grid:
         m = heights.shape[0]
         if m == self.n:
             return heights
-        source = Grid(m, 2 * half_width / m)
-        given = source.x
-        if not isinstance(heights, np.ndarray):
-            x = np.clip(self.x, given[0], given[-1])
-            return _linear(_linear(heights, source, x).T, source, x).T
+        given = Grid(m, 2 * half_width / m).x
         spline = RectBivariateSpline(given, given, heights, kx=1, ky=1)
         x = np.clip(self.x, given[0], given[-1])
         return spline(x, x)
@@ -255,7 +251,7 @@ def touches_rim(pressure: Array, quarter: bool = False, rings: int = 1) -> bool:
 
 def _linear(values: Array, source: Grid, x: Array) -> Array:
     """Linear interpolation along the first index, from the patch centres of the source to x; 0 beyond it."""
-    (n, width) = values.shape
+    n, width = values.shape
     at = np.clip((x - source.x[0]) / source.d, 0, n - 1)
     i = np.minimum(at.astype(int), n - 2)
     t = (at - i)[:, None]

@@ -46,8 +46,7 @@ def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Ar
 
     With an elastic ball, of the approach of both surfaces: u_z of the flat plus that of the ball.
 
-    n : offsets 0..n-1.  d : side of the patches [m].
-    Returns shape (n, n), even in both indices.
+    n : offsets 0..n-1.  d : side of the patches [m].  Returns shape (n, n), even in both indices.
     """
     both, enlarge, threads = body.response, numerics.enlarge, numerics.threads
     if numerics.conversion == "plain":

@@ -192,7 +192,7 @@ class LevelProblem:
     ) -> None:
         self.grid, self.gap, self.depth, self.window, self.before = grid, gap, depth, window, before
         self.indenter, self.body, self.numerics, self.datum = indenter, body, numerics, datum
-        (nx, ny) = grid.across(window).shape
+        nx, ny = grid.across(window).shape
         kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics)[:nx, :ny]
         held, threads = grid.quarter, numerics.threads
         memory: Array | None = None

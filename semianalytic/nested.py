@@ -86,8 +86,6 @@ def undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
         grid = replace(grid, quarter=True)
         return grid, indenter.gap(grid)
     gap = indenter.gap(grid)
-    if not isinstance(gap, np.ndarray):
-        return grid, gap
     c = (grid.n + 1) // 2
     rows = gap[:c]
     if np.array_equal(rows, gap[: -c - 1 : -1]) and np.array_equal(rows[:, :c], rows[:, : -c - 1 : -1]):
