@@ -14,6 +14,7 @@ from verification.judging.verdict import Claim, Outcome
 from verification.page.number_text import plain, scientific
 from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of
 from verification.problem.coated_contact import BALL
+from verification.problem.line_profile import EDGE_LINE
 from verification.problem.quantity import QUANTITIES
 from verification.regression.baseline_change import State, baseline_message
 from verification.regression.manifest import manifest_message
@@ -144,6 +145,12 @@ def left_out(material: Material) -> tuple[float, int]:
         for claim, _ in result.verdicts
     ]
     return 100 * max(zones, default=0.0), sum(zone > 0 for zone in zones)
+
+
+def near_edge(material: Material) -> tuple[float, int]:
+    """The cap next to the edge of a contact that is no disc, and the number of comparisons with it."""
+    caps = [c.cap for result in material.results for c, _ in result.verdicts if c.line == EDGE_LINE]
+    return max(caps, default=0.0), len(caps)
 
 
 def _scale(claim: Claim) -> str:
@@ -312,4 +319,5 @@ FIRST_PAGE: Mapping[str, Callable[[Material], Any]] = {
     "chart": chart,
     "worth": worth,
     "left_out": left_out,
+    "near_edge": near_edge,
 }
