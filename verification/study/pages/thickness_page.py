@@ -116,8 +116,7 @@ def _answer(found: Choice, units: Units, *, several: bool) -> str:
 
 def _even(found: Choice, units: Units) -> str:
     percent = math.ceil(100 * found.tolerance - 1e-9)
-    verb = f"are within {percent} % of each other"
-    return f"{between(found, found.even, units)} {verb}"
+    return f"{between(found, found.even, units)} stress the bodies least, within {percent} % of each other"
 
 
 def between(found: Choice, pair: Range, units: Units, *, safe: bool = False) -> str:
