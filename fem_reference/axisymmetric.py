@@ -142,7 +142,7 @@ class Discretisation(Uncached):
 
         That factor is 2 pi for harmonic 0, pi for others. ``materials`` = (E, nu) per layer.
         """
-        return _assembled(*self._elements(materials, harmonic, slice(None)))
+        return _assembled(*self._elements(materials, harmonic, slice(None)), (3 if harmonic else 2) * self.N)
 
     def skeleton(self, materials: tuple[tuple[float, float], ...], harmonic: float) -> "Skeleton":
         """The same without the unknowns inside the triangles."""
@@ -207,9 +207,7 @@ class Discretisation(Uncached):
         """Shape functions on the contact, with quadrature exact for products of two and r."""
         mesh, a = self.triangulation, self.mesh.contact_radius
         edges = mesh.facets_satisfying(lambda x: (x[1] == 0) & (x[0] < a), boundaries_only=True)
-        return FacetBasis(
-            self.triangulation, ELEMENTS[self.order](), facets=edges, intorder=2 * self.order + 1
-        )
+        return FacetBasis(mesh, ELEMENTS[self.order](), facets=edges, intorder=2 * self.order + 1)
 
     def contact_mass(self) -> sp.csr_matrix:
         """Mass matrix of the contact, int phi_i phi_j r dr; shape (N, N)."""
@@ -251,8 +249,7 @@ class Skeleton:
         return u
 
 
-def _assembled(elements: np.ndarray, numbers: np.ndarray, n: int | None = None) -> sp.csc_matrix:
+def _assembled(elements: np.ndarray, numbers: np.ndarray, n: int) -> sp.csc_matrix:
     """Sum (n, n) of the matrices ``elements`` (m, size, size) of the unknowns ``numbers`` (m, size)."""
-    n = int(numbers.max()) + 1 if n is None else n
     rows, columns = np.broadcast_arrays(numbers[:, :, None], numbers[:, None, :])
     return sp.coo_matrix((elements.ravel(), (rows.ravel(), columns.ravel())), shape=(n, n)).tocsc()

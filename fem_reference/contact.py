@@ -77,9 +77,8 @@ class Multiplier:
 
 @dataclass(frozen=True, eq=False)
 class Ball:
-    """An elastic ball in contact: its layers, its elements, its displacement with z into it."""
+    """An elastic ball in contact: its elements, its displacement with z into it."""
 
-    solid: LayeredSolid
     discretisation: Discretisation
     fields: np.ndarray
 
@@ -121,13 +120,10 @@ class FixedRadiusContact:
         The difference of the loads counts as a force out of balance.
         """
         factor, p, ball = self.radius_at(load) / self.contact_radius, self.pressure, self.ball
-
-        def moved(d: Discretisation) -> Discretisation:
-            return Discretisation(d.mesh.stretched(factor), d.order)
-
+        flat = replace(self.discretisation, mesh=self.discretisation.mesh.stretched(factor))
         if ball:
-            ball = Ball(ball.solid, moved(ball.discretisation), ball.fields * factor**2)
-        flat = moved(self.discretisation)
+            moved = replace(ball.discretisation, mesh=ball.discretisation.mesh.stretched(factor))
+            ball = Ball(moved, ball.fields * factor**2)
         return replace(
             self,
             discretisation=flat,
@@ -206,7 +202,7 @@ def solve_at_radius(
         stiffness=float(stiffness),
         growth=float(a / W * stiffness * K / (2 * k)),
         residual=float(2 * np.pi * np.abs(solved.residual @ combine).max() / abs(W)),
-        ball=None if ball is None else Ball(ball[0], ball[1].ball, of_ball @ combine),
+        ball=None if ball is None else Ball(ball[1].ball, of_ball @ combine),
         curvature=curvature,
     )
 

@@ -18,8 +18,6 @@ from .axisymmetric import Discretisation
 from .linear_system import Constrained, constrained_solve
 from .scaling import LayeredSolid
 
-Solids = tuple[LayeredSolid, LayeredSolid]
-
 
 @dataclass(frozen=True, eq=False)
 class Coupling:
@@ -37,7 +35,7 @@ class Coupling:
             raise ValueError("the meshes of flat and ball have different nodes on the surface")
 
     def solve(
-        self, solids: Solids, jump: np.ndarray, far: np.ndarray
+        self, solids: tuple[LayeredSolid, LayeredSolid], jump: np.ndarray, far: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, Constrained]:
         """Displacements of flat and ball, several cases in columns.
 

@@ -271,26 +271,24 @@ def estimates(
     load_residual: float,
     edge: float,
     size: float,
-    bodies: tuple[ElasticState, ...] = (),
+    bodies: tuple[ElasticState, ...],
 ) -> Estimates:
     """Uncertainty of a frictionless ``state``.
 
     changes : of contact radius and approach from the mesh of the companion, at one load
     load_residual : relative error of the load
     edge : displacement of the contact edge by the size of the last triangle
-    size : of the mesh.  bodies : the states of all bodies in contact, by default this one alone
+    size : of the mesh.  bodies : the states of all bodies in contact
     """
     d = state.discretisation
     vertices, a = d.contact_vertices, d.mesh.contact_radius
     at, largest = peak(state.pressure, vertices)
     size_radius, size_approach = changes
-    bodies = bodies or (state,)
     far_approach, far_stress, curvature = np.sum([body.truncation(0) for body in bodies], axis=0)
     # The sphere has curvature 1; at given load a ~ R^(1/3) and p0 ~ R^(-2/3), on the bare substrate. A given
     # pressure with its radius is exact.
     far_radius, far_pressure = np.array([a, largest]) * (curvature if state.normal.root_at_edge else 0.0)
     central = sum(body.central_displacement for body in bodies)
-    displacement = units.displacement
     factor, functional = _factors(d.order, size)
     pointwise = factor * _coarseness(size)
     balance = load_residual / 2 * a  # a ~ W^(1/n), n at least 2 on any layers
@@ -313,9 +311,9 @@ def estimates(
         ("contact_radius", "edge size", SAFETY * edge * units.length),
         ("contact_radius", "outer boundary", far_radius * units.length),
         ("contact_radius", "load balance", balance * units.length),
-        ("approach", "element size", functional * size_approach * displacement),
-        ("approach", "outer boundary", far_approach * displacement),
-        ("approach", "load balance", load_residual * central * displacement),
+        ("approach", "element size", functional * size_approach * units.displacement),
+        ("approach", "outer boundary", far_approach * units.displacement),
+        ("approach", "load balance", load_residual * central * units.displacement),
         ("peak_pressure", "element size", size_peak * units.pressure),
         ("peak_pressure", "outer boundary", far_pressure * units.pressure),
         ("peak_pressure", "load balance", load_residual / 3 * largest * units.pressure),

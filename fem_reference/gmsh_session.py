@@ -13,7 +13,6 @@ from contextlib import contextmanager
 from types import ModuleType
 from typing import Any
 
-# one instance of gmsh per process: one thread at a time
 _LOCK = threading.Lock()
 
 _MISSING = (
@@ -64,8 +63,7 @@ def session(name: str) -> Iterator[Any]:
     """A gmsh with one fresh model called ``name``, silent, with defaults of its own.
 
     Where the caller's process already runs gmsh, its models stay, its current model stays current and its
-    options return to what they were; otherwise gmsh is started without signal handlers or configuration
-    files, so that it may run in any thread, and is shut down again.
+    options return to what they were; otherwise gmsh is started in any thread and shut down again.
     Raises ImportError (naming the apt packages) when gmsh's system libraries are missing.
     """
     with _LOCK:

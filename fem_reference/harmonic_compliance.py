@@ -113,6 +113,8 @@ class HarmonicCompliance:
         found = {m: np.zeros((2 if m == 0 else 3) * self.discretisation.N) for m in of}
         for k, one in enumerate(solved):
             shares = [(m, w) for m in of for j, w in _weights(solved, m) if j == k]
+            if not shares:
+                continue
             meridian = known.get(one) or Meridian.of(self.solid, self.discretisation, one)
             columns = np.stack([w * of[m] for m, w in shares], axis=-1)
             for (m, _), u in zip(shares, meridian.fields(columns).T, strict=True):

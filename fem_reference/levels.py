@@ -17,7 +17,9 @@ from .scaling import LayeredSolid, first_radius
 
 # One row of triangles in a coating: the radius is good to 1e-5, from where the companion takes one solve.
 _COARSE = Grading.of(0.5, rows=1.0)
-_OF_COMPANION = 1e-5  # tolerance of its load, which the estimate takes into account: one solve instead of two
+# Tolerances of the load. That of the companion counts in the estimate: one solve instead of two. The final
+# mesh meets its own by one solve, then moves with its edge to the load itself.
+_OF_COMPANION, _OF_FINAL = 1e-5, 3e-8
 _STRETCH = 1.3  # largest factor by which radii are stretched before a new mesh is generated
 # Above this Poisson ratio flat triangles in a film lock far from the contact: at 0.4999 the approach erred by
 # 2.4 times its uncertainty until the largest were this share of those of other films.
@@ -48,7 +50,6 @@ def solve_levels(
     order: int,
     size: float,
     max_iterations: int,
-    tolerance: float,
     with_companion: bool,
     curvature: float = 0.0,
 ) -> tuple[FixedRadiusContact, FixedRadiusContact | None, History]:
@@ -56,14 +57,14 @@ def solve_levels(
 
     Returns the contact on the final mesh, that on the companion if wanted, and every solve.
 
-    order, size, tolerance : of the final level.  max_iterations : contact solves allowed on each level
+    order, size : of the final level.  max_iterations : contact solves allowed on each level
     curvature : of the gap, as in `contact.undeformed_gap`
     Raises NotConverged when the load is not reached on one of the levels.
     """
     levels = [Level("coarse", _COARSE, 1e-3)]
     if with_companion:
-        levels.append(Level("companion", companion_grading(size), max(tolerance, _OF_COMPANION)))
-    levels.append(Level("final", final_grading(size), tolerance))
+        levels.append(Level("companion", companion_grading(size), _OF_COMPANION))
+    levels.append(Level("final", final_grading(size), _OF_FINAL))
     a = first_radius(solids, load)
     history: History = []
     found: dict[str, FixedRadiusContact] = {}

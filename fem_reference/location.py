@@ -32,7 +32,7 @@ class Uncached:
 class LocatedPoints:
     """Points of shape (n,) in their triangles.
 
-    r_given : radii as given.  r : at least ``_AXIS`` contact radii.  z : snapped to the interfaces.
+    r_given : radii as given.  r : at least ``_AXIS`` contact radii.  z : on interfaces exactly.
     layer : layer of each point.  cells : triangle of (r, z).  X : its reference coordinates, (2, n).
     """
 
@@ -92,9 +92,6 @@ class Locator:
     def points(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> LocatedPoints:
         """The points (r, z) of shape (n,) with their triangles inside ``layer``."""
         near = np.maximum(r, _AXIS * self.mesh.contact_radius)
-        z = z.copy()
-        for depth in self.mesh.depths:
-            z[np.abs(z - depth) <= 1e-12 * depth] = depth
         return LocatedPoints(self, r, near, z, layer, *self.triangles(near, z, layer))
 
     def triangles(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -137,21 +134,21 @@ def solid_points(locator: Locator, length: float, x: Any, y: Any, z: Any, layer:
     mesh = locator.mesh
     x, y, z = np.broadcast_arrays(*(np.asarray(c, dtype=float) for c in (x, y, z)))
     shape = x.shape
-    x, y, z = x.ravel(), y.ravel(), z.ravel().copy()
-    r = np.hypot(x, y)
-    far = float(mesh.points.max()) * length
-    levels = np.array([0.0, *(mesh.depths * length), np.inf])
+    x, y, z = x.ravel(), y.ravel(), z.ravel() / length
+    distance = np.hypot(x, y)
+    r, far = distance / length, float(mesh.points.max()) * length
+    levels = np.array([0.0, *mesh.depths, np.inf])
     thickness = np.diff(levels)
     for k, level in enumerate(levels[:-1]):
-        h = min(thickness[max(k - 1, 0)], thickness[k], mesh.contact_radius * length)
+        h = min(thickness[max(k - 1, 0)], thickness[k], mesh.contact_radius)
         z[np.abs(z - level) <= 1e-9 * h] = level
     if z.size and not (np.all(z >= 0) and np.all(np.isfinite(r)) and np.all(np.isfinite(z))):
-        worst = z[~(z >= 0)][0] if np.any(~(z >= 0)) else np.nan
+        worst = length * z[~(z >= 0)][0] if np.any(~(z >= 0)) else np.nan
         raise ValueError(f"z = {worst:g} m is not inside the solid; depth counts down from 0 at the surface")
-    if z.size and max(z.max(), r.max()) > far * (1 + 1e-9):
+    farthest = length * max(z.max(initial=0), r.max(initial=0))
+    if farthest > far * (1 + 1e-9):
         raise ValueError(
-            f"a point {max(z.max(), r.max()):g} m out is beyond the meshed solid ({far:g} m); "
-            f"choose a larger far boundary"
+            f"a point {farthest:g} m out is beyond the meshed solid ({far:g} m); choose a larger far boundary"
         )
     # the upper side of an interface belongs to the layer above it
     layers = np.searchsorted(levels[1:-1], z, side="left")
@@ -161,13 +158,12 @@ def solid_points(locator: Locator, length: float, x: Any, y: Any, z: Any, layer:
         lower, upper = levels[layer : layer + 2]
         outside = (z < lower) | (z > upper)
         if np.any(outside):
-            raise ValueError(
-                f"z = {z[outside][0]:g} m is not in layer {layer}, from {lower:g} to {upper:g} m deep"
-            )
+            beyond, upper, lower = (depth * length for depth in (z[outside][0], upper, lower))
+            raise ValueError(f"z = {beyond:g} m is not in layer {layer}, from {lower:g} to {upper:g} m deep")
         layers = np.full(z.shape, layer)
-    unit = np.where(r > 0, r, 1.0)
+    unit = np.where(r > 0, distance, 1.0)
     cos = np.where(r > 0, x / unit, 1.0)
-    return SolidPoints(locator.points(r / length, z / length, layers), cos, y / unit, shape)
+    return SolidPoints(locator.points(r, z, layers), cos, y / unit, shape)
 
 
 def _reference_coordinates(

@@ -209,12 +209,11 @@ def _triangulate(
             row = max((lower - upper) / grading.rows, _LEAST_ROW * grading.size)
             sizes.append(f"Min({_literal(grading.film_size)},{_literal(row)}*{growth})+0.4*{away}")
         field = gmsh.model.mesh.field
-        numbers = range(1, len(sizes) + 1)
-        for number, size in zip(numbers, sizes, strict=True):
+        for number, size in enumerate(sizes, start=1):
             field.add("MathEval", number)
             field.setString(number, "F", size)
         smallest = field.add("Min")
-        field.setNumbers(smallest, "FieldsList", list(numbers))
+        field.setNumbers(smallest, "FieldsList", list(range(1, len(sizes) + 1)))
         field.setAsBackgroundMesh(smallest)
         gmsh.model.mesh.generate(2)
 

@@ -19,14 +19,13 @@ from .harmonic_compliance import HarmonicCompliance, harmonic_compliance
 from .location import SolidPoints, solid_points
 from .mesh import Grading, MeridianMesh, meridian_mesh
 from .recovery import HarmonicField
-from .scaling import LayeredSolid, Units
+from .scaling import Coatings, LayeredSolid, Units
 from .solution import cartesian, tensor
 from .validation import check_choice, check_materials, check_positive, check_proportions
 
 __all__ = ["OffAxisFields", "PressedSolid", "check_pressure", "discretised"]
 
 Pressure = Callable[[Any, Any], Any]
-Coatings = tuple[tuple[float, float, float], ...]
 
 ANGLES = 2048  # midpoints on half a circle: p falls to zero like a square root there
 RADIAL = 48  # points between two vertices of the surface: p_m has kinks there

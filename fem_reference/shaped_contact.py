@@ -18,13 +18,11 @@ from .harmonic_compliance import harmonic_compliance
 from .indenter_height import Height, Indenter, indenter_height
 from .levels import NotConverged
 from .off_axis import OffAxisFields, PressedSolid, discretised
-from .scaling import LayeredSolid, Units
+from .scaling import Coatings, LayeredSolid, Units
 from .star_contact import Corrected, StarPressure, corrected
 from .validation import check_choice, check_materials, check_positive, check_proportions
 
 __all__ = ["ShapedContact", "ShapedDiagnostics", "solve_shape"]
-
-Coatings = tuple[tuple[float, float, float], ...]
 
 MARGIN = 1.04  # of the contact up to the last node below the pressure
 WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere

@@ -145,13 +145,19 @@ class Solution:
         Raises ValueError like ``stress``, and when the solution was solved without an estimate.
         """
         estimates, points = self._estimated(body), self._points(x, y, z, layer, body)
-        return self._stress(self._of(body).state, points), self._stress_uncertainty(estimates, points)
+        cos, sin = np.abs(points.cos), np.abs(points.sin)
+        error = estimates.normal(points.located)
+        if estimates.tangential is not None:
+            error = error + estimates.tangential(points.located) * np.stack([cos] * 4 + [sin] * 2)
+        # absolute values of all products in the rotation add up
+        U = tensor(error * self.units.pressure, cos, sin, sign=1.0).reshape(3, 3, *points.shape)
+        return self._stress(self._of(body).state, points), U
 
     def stress_uncertainty(
         self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat"
     ) -> np.ndarray:
         """The second part of ``stress_with_uncertainty`` alone."""
-        return self._stress_uncertainty(self._estimated(body), self._points(x, y, z, layer, body))
+        return self.stress_with_uncertainty(x, y, z, layer, body)[1]
 
     def displacement(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
         """Displacement (u_x, u_y, u_z) [m], u_z into the body; shape (3,) + that of the points."""
@@ -219,14 +225,6 @@ class Solution:
             _, sliding = state.tangential(points.located)
             sigma = sigma + sliding * np.stack([cos] * 4 + [sin] * 2)
         return tensor(sigma * self.units.pressure, cos, sin).reshape(3, 3, *points.shape)
-
-    def _stress_uncertainty(self, estimates: Estimates, points: SolidPoints) -> np.ndarray:
-        cos, sin = np.abs(points.cos), np.abs(points.sin)
-        error = estimates.normal(points.located)
-        if estimates.tangential is not None:
-            error = error + estimates.tangential(points.located) * np.stack([cos] * 4 + [sin] * 2)
-        # absolute values of all products in the rotation add up
-        return tensor(error * self.units.pressure, cos, sin, sign=1.0).reshape(3, 3, *points.shape)
 
 
 def cartesian(u: np.ndarray, cos: np.ndarray, sin: np.ndarray) -> np.ndarray:

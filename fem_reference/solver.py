@@ -41,8 +41,6 @@ CONTRASTS = {
     10.0: {"fast": 0.17, "default": 0.12, "fine": 0.1},
     100.0: {"fast": 0.15, "default": 0.1, "fine": 0.085},
 }
-# Met by one solve on the final mesh, which then moves with its edge to the load itself.
-LOAD_TOLERANCE = 3e-8
 
 
 def solve(
@@ -58,7 +56,6 @@ def solve(
     size: float | None = None,
     far: float = 1000.0,
     max_iterations: int = 30,
-    load_tolerance: float = LOAD_TOLERANCE,
     estimate_uncertainty: bool = True,
     gap: str = "parabola",
 ) -> Solution:
@@ -74,16 +71,13 @@ def solve(
     size    : triangle size over its distance from the contact edge, 0.08 to 0.5; None for that of ``quality``
     far     : distance of the outer boundary over (a_h + thickness of all coatings)
     max_iterations : contact solves allowed on each mesh level
-    load_tolerance : relative error of the load allowed on the last two levels
     gap     : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2)
     The approach is that of distant points of both bodies.
     Poisson ratios up to 0.49 do not lock at order 4; above, digits are lost as 1/(1 - 2 nu), and 0.5 is
     refused. Raises ValueError for bad input, NotConverged when no contact radius has the load.
     """
     started = time.perf_counter()
-    check_positive(
-        radius=radius, load=load, far=far, max_iterations=max_iterations, load_tolerance=load_tolerance
-    )
+    check_positive(radius=radius, load=load, far=far, max_iterations=max_iterations)
     check_materials(coatings, substrate, friction)
     check_choice("order", order, (2, 3, 4))
     check_choice("gap", gap, ("parabola", "sphere"))
@@ -108,7 +102,6 @@ def solve(
         order=order,
         size=size,
         max_iterations=max_iterations,
-        tolerance=load_tolerance,
         with_companion=estimate_uncertainty,
         curvature=a_h / radius if gap == "sphere" else 0.0,
     )
@@ -187,7 +180,7 @@ def solve_prescribed(
     if estimate_uncertainty:
         companion = state_on(companion_grading(size))
         change = abs(state.central_displacement - companion.central_displacement)
-        found = estimates(state, companion, unit, (0.0, change), load_residual=0.0, edge=0.0, size=size)
+        found = estimates(state, companion, unit, (0.0, change), 0.0, 0.0, size, (state,))
     d = state.discretisation
     nodes = _surface_nodes(d)
     frictionless = Solution(

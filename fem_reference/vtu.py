@@ -67,8 +67,7 @@ def plane_mesh(solution: "Solution") -> PlaneMesh:
 def write_vtu(solution: "Solution", path: str | PathLike[str]) -> Path:
     """Write the plane y = 0 as quadratic triangles to ``path`` (.vtu); returns the path.
 
-    Cell data: ``layer``, 0 at the surface. Point data: ``displacement [m]`` (3), the six stresses
-    ``sigma_xx [Pa]`` ... ``sigma_xz [Pa]``, ``von_mises [Pa]``. With friction both halves are written.
+    Cell data ``layer``, 0 at the surface, and the point data of `plane_mesh`.
     Raises ValueError when the name does not end in .vtu, OSError when the file cannot be written.
     """
     import meshio

@@ -184,7 +184,7 @@ def test_each_cause_adds_to_the_uncertainty():
     found, unit, state = s.bodies[0].estimates, s.units, s.state
 
     def of(load_residual=0.0, edge=0.0, changes=(0.0, 0.0)):
-        return estimates(state, found.companion, unit, changes, load_residual, edge, 0.5)
+        return estimates(state, found.companion, unit, changes, load_residual, edge, 0.5, (state,))
 
     none, load, edge, size = of(), of(load_residual=1e-3), of(edge=1e-3), of(changes=(1e-3, 1e-3))
     for one in (none, load, edge, size):
