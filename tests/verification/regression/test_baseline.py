@@ -13,6 +13,7 @@ from synthetic_results import INFO, STEEL, contact, result_of
 from verification.cases.case_file import default_cases
 from verification.cases.published_file import published_cases
 from verification.commands.common.known_folders import BASELINE
+from verification.problem.line_profile import EDGE_LINE
 from verification.regression.baseline_change import (
     Baseline,
     against,
@@ -23,11 +24,12 @@ from verification.regression.baseline_change import (
     updated,
 )
 from verification.regression.baseline_file import path_in, read_baseline, write_baseline
-from verification.regression.number_drift import RELATIVE, State, measured
+from verification.regression.number_drift import RELATIVE, State, drift, measured
 from verification.report.report_material import Material
 from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, to_json
 from verification.running.checked_files import StoreError, write_checked
+from verification.sampling.line_sampling import BESIDE_SHAPED
 
 E, NU = STEEL
 RESULT = result_of(contact((2 * E, NU, 1.0)), text="title = 'stiff'\n")
@@ -91,6 +93,19 @@ def test_a_value_at_the_contact_edge_is_compared_by_its_uncertainty():
         (at + 1, 5e-7, State.DRIFTED),
     ):
         assert case_drift(changed(edge, index, by, "pressure", "surface"), baseline_of(edge)).state is state
+
+
+@pytest.mark.parametrize(
+    ("index", "by", "state"),
+    [(5, 2e-8, State.SAME), (16, 2e-8, State.SAME), (5, 2e-5, State.DRIFTED), (6, 2e-8, State.DRIFTED)],
+)
+def test_the_ends_of_a_contact_that_is_no_disc_are_compared_by_their_uncertainty(index, by, state):
+    beside = np.concatenate([-BESIDE_SHAPED[:0:-1], BESIDE_SHAPED])
+    position, value = np.concatenate([beside - 1, beside + 1]), np.linspace(1.0, 0.5, 22)
+    then = replace(measured(RESULT)[0], line=EDGE_LINE, position=position, value=value)
+    then = replace(then, scale=1.0, uncertainty=np.full(22, 1e-5))
+    now = replace(then, value=value + by * (np.arange(22) == index))
+    assert drift(then, now).state is state
 
 
 def test_the_place_of_the_tension_is_measured_by_itself():
