@@ -13,6 +13,7 @@ import pytest
 from html_document import Document
 from synthetic_results import INFO, STEEL, contact, crashed, result_of, showcase
 
+from verification.cases.case_file import shipped_cases
 from verification.judging.verdict import Outcome
 from verification.page.symbol_text import typeset
 from verification.report import report_page as module
@@ -105,6 +106,7 @@ def test_many_cases_are_grouped_behind_the_worst():
     assert chart.rows[0].title == "Dead"
     assert chart.rows[-1].title.startswith(f"{40 - first_page.OWN_ROWS} more")
     assert first_page.chart(Material(several[:3], INFO)).grouped == 0
+    assert len(first_page.chart(Material(several[: len(shipped_cases())], INFO)).rows) < first_page.MOST_ROWS
 
 
 def test_every_case_has_a_row_in_the_matrix_and_a_section_with_its_command(document, results):
