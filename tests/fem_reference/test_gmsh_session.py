@@ -5,7 +5,6 @@ import os
 import signal
 import subprocess
 import sys
-import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import gmsh
@@ -89,17 +88,6 @@ def test_threads_and_processes_get_the_same_answers():
         for text in texts
     ]
     assert [float.fromhex(process.communicate(timeout=120)[0]) for process in processes] == expected
-
-
-def test_threads_take_turns_in_the_mesher():
-    meshes = []
-    workers = [threading.Thread(target=lambda: meshes.append(mesh())) for _ in range(6)]
-    for worker in workers:
-        worker.start()
-    for worker in workers:
-        worker.join()
-    assert len(meshes) == 6
-    assert all(np.array_equal(m.points, meshes[0].points) for m in meshes)
 
 
 def test_a_running_session_of_the_caller_survives():

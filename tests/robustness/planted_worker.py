@@ -40,14 +40,6 @@ def main(how: str, path: str) -> None:
         np.empty(1 << 46, dtype=np.uint8)
     elif how == "kernel":
         os.kill(os.getpid(), signal.SIGKILL)
-    elif how == "greed":
-        # A control group that the test has made, so that only this process runs out of memory.
-        Path(os.environ["PLANTED_GROUP"], "tasks").write_text(str(os.getpid()))
-        import numpy as np
-
-        blocks = []
-        while True:
-            blocks.append(np.ones(1 << 22))
     elif how == "process":
         write_checked(Path(path), {"said": str(os.getpid())})
     elif how == "threads":

@@ -1,22 +1,18 @@
 """Workers that crash, hang or run out of memory: no result of their own, nobody else's lost, none left."""
 
-import json
 import os
 import re
 import signal
 import subprocess
 import sys
 import time
-from collections import Counter
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import planted_worker
 import pytest
-from quick_case import QUICK
 
-from verification.commands import run as command
 from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.running.pool import process_pool
 from verification.running.pool.pool_task import Task
@@ -102,26 +98,6 @@ def test_hanging_worker_is_stopped_with_what_it_started(tmp_path):
     gone(pids, within=10)
 
 
-@pytest.mark.slow
-def test_worker_that_the_kernel_stops_for_want_of_memory_is_one_sentence(tmp_path, environment):
-    group = Path("/sys/fs/cgroup/memory/coatcheck-greed")
-    try:
-        group.mkdir()
-        (group / "memory.limit_in_bytes").write_text("150000000")
-    except OSError as error:
-        pytest.skip(f"no memory control group can be made here ({error})")
-    environment(PLANTED_GROUP=str(group))
-    try:
-        tasks = [task("greed", tmp_path, n) for n in range(10)]
-        *reasons, good = run_tasks([*tasks, task("good", tmp_path)], jobs=2, time_limit=300)
-    finally:
-        time.sleep(0.5)
-        group.rmdir()
-    assert good == "good"
-    assert all(re.fullmatch(REASONS["kernel"], reason) for reason in reasons), reasons
-    sys.stdout.write(f"{len(reasons)} workers stopped by the kernel for want of memory\n")
-
-
 def test_worker_that_cannot_write_ends_the_run_with_one_sentence(tmp_path):
     write_checked(tmp_path / "good-0.json", {"said": "earlier"})
     (tmp_path / "file").write_text("in the way")
@@ -203,41 +179,3 @@ def hang_in(folder: str) -> None:
 
 def test_workers_of_a_killed_run_end_with_it(tmp_path):
     assert orphans_of(tmp_path / "run") < 5
-
-
-@pytest.mark.slow
-def test_every_death_ten_times_in_a_run_that_still_writes_its_report(tmp_path, monkeypatch, capsys):
-    names = {f"{how.replace(' ', '_')}-{n}": how for how in REASONS for n in range(10)}
-    (tmp_path / "quick.toml").write_text(QUICK)
-    for name in names:
-        (tmp_path / f"{name}.toml").write_text(QUICK)
-    solving = command.case_task
-
-    def planted(case, folder, **keywords):
-        task = solving(case, folder, **keywords)
-        how = names.get(case.name)
-        work = partial(planted_worker.main, how, task.path)
-        return task if how is None else replace(task, work=work, together=None)
-
-    monkeypatch.setattr(command, "case_task", planted)
-    files = [str(tmp_path / f"{name}.toml") for name in ("quick", *names)]
-    output = tmp_path / "out"
-    code = command.run(*files, output=output, jobs=10, time_limit=40, as_json=True)
-    capsys.readouterr()
-    report = json.loads((output / "report.json").read_text())
-    assert (output / "report.html").stat().st_size > 10_000
-    assert code == 3
-    found = Counter()
-    for case in report["cases"]:
-        if case["name"] == "quick":
-            assert case["outcome"] == "AGREES"
-            continue
-        how = names[case["name"]]
-        assert case["outcome"] == "NO_RESULT"
-        reasons = {verdict["verdict"]["reason"] for verdict in case["verdicts"]}
-        assert len(reasons) == 1
-        assert re.fullmatch(REASONS[how], reasons.pop()), how
-        found[how] += 1
-    assert found == dict.fromkeys(REASONS, 10)
-    with capsys.disabled():
-        sys.stdout.write(f"{found.total()} planted deaths, ten of each kind, all NO_RESULT with the reason\n")

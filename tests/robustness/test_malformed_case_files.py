@@ -217,7 +217,6 @@ why = "peak"
 """
 
 
-SUBSTRATE = "substrate = { E = 210e9, nu = 0.3 }"
 LAYER = "[[problem.coatings]]\nE = 1e9\nnu = 0.3\nthickness = 1e-5\n"
 NOT_FILES = [
     (b"", "title"),
@@ -234,49 +233,24 @@ NOT_FILES = [
 CHANGED = [
     ("load = 20", "load = " + "9" * 5000, "TOML"),
     ("load = 20", "load = 1" + "0" * 400, "problem.load"),
-    ("load = 20", "load = 1e400", "problem.load"),
-    ("load = 20", "load = true", "problem.load"),
-    ("load = 20", 'load = "20 kg"', "problem.load"),
-    ("load = 20", "load = { N = 20 }", "problem.load"),
     ("load = 20", "load = 20\nload = 20", "TOML"),
-    ("load = 20", "Load = 20", "problem.load"),
     ("load = 20", "load = 20\nhardness = 7", "problem.hardness"),
     ("load = 20", 'load = 20\n"\\u001b[31m" = 7', "key"),
-    ("load = 20", "load = 1e12", "problem.load"),
     ("radius = 10e-3", "radius = 5e-324", "problem"),
-    ("radius = 10e-3", "radius = 1e308", "problem"),
-    ("radius = 10e-3", "", "problem.radius"),
-    (SUBSTRATE, "", "problem.substrate"),
-    (SUBSTRATE, "substrate = 210e9", "problem.substrate"),
-    ("nu = 0.3 }", "nu = 0.5 }", "problem.substrate.nu"),
-    ("nu = 0.3 }", "nu = 0.3, G = 80e9 }", "problem.substrate.G"),
     ("E = 210e9", "E = 210", "problem"),
-    ("E = 210e9", "E = 1.7976931348623157e308", "problem"),
     ("E = 420e9", "E = 420e17", "moduli"),
-    ("E = 420e9", "E = -420e9", "problem.coatings.0.E"),
     ("[[problem.coatings]]", "[problem.coatings]", "problem.coatings"),
-    ("[[problem.coatings]]", "[[coatings]]", "coatings"),
     ("[[problem.coatings]]", LAYER * 50 + "[[problem.coatings]]", "problem.coatings"),
     ("thickness = 70e-6", "", "problem.coatings.0"),
     ("thickness = 70e-6", "thickness = 70e-6\nthickness_over_a_h = 1", "problem.coatings.0"),
-    ("thickness = 70e-6", "thickness = 1e-30", "problem.coatings.0.thickness"),
     ("thickness = 70e-6", "thickness_over_a_h = 1e6", "problem.coatings.0.thickness"),
-    ('"Stiff coating"', '""', "title"),
     ('"Stiff coating"', f'"{"x" * 600}"', "title"),
-    ('"Stiff coating"', "['a']", "title"),
-    ("[problem]", "[semianalytic]\npatches = 1e3\n[problem]", "semianalytic.patches"),
     ("[problem]", "[semianalytic]\npatches = 128\n[problem]", "semianalytic.patches"),
-    ("[problem]", "[semianalytic]\nconversion = 'magic'\n[problem]", "semianalytic.conversion"),
     ("[problem]", "[fem_reference]\norder = 9\n[problem]", "fem_reference.order"),
-    ("[problem]", "[fem_reference]\nquality = 'best'\n[problem]", "fem_reference.quality"),
     ("[problem]", "[abaqus]\nlicence = 1\n[problem]", "abaqus"),
-    ('"sigma_xx"', '"sigma_rr"', "claim.0.quantity"),
     ('"surface"', '"interface 2, upper side"', "claim.0.line"),
     ('"fem_reference"]', '"hertz"]', "claim.0.between"),
-    ('"fem_reference"]', '"semianalytic"]', "claim.0.between"),
-    ('"fem_reference"]', '"fem_reference", "hertz"]', "claim.0.between"),
     ("cap = 0.005", "cap = 2", "claim.0.cap"),
-    ("cap = 0.005", "cap = 0.005\nedge = 1", "claim.0.edge"),
     ('why = "peak"', "", "claim.0.why"),
 ]
 BAD = NOT_FILES + [((GOOD + JUDGED).replace(old, new, 1).encode(), key) for old, new, key in CHANGED]

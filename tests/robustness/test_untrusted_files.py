@@ -4,24 +4,18 @@ import ast
 import json
 import shutil
 import time
-from dataclasses import replace
-from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
 from quick_case import QUICK, coatcheck
 
-from verification.cases.case_file import parse_case, read_case
+from verification.cases.case_file import read_case
 from verification.cases.published_file import read_any_case
 from verification.cases.toml_file import CaseError
 from verification.commands.common.terminal import one_line
-from verification.judging.verdict import Outcome, Verdict
-from verification.report.report_material import Material
-from verification.report.report_page import render
-from verification.running.case_result import RunInfo, SourceResult
+from verification.running.case_result import RunInfo
 from verification.running.case_tasks import result_path
 from verification.running.checked_files import StoreError
-from verification.running.contact_run import failed
 from verification.running.stored_fields import fields_path, plane_path
 from verification.running.stored_run import read_run
 
@@ -35,7 +29,6 @@ CODE = {"eval", "exec", "compile", "__import__"}
 # A task goes to a child of this process through a pipe of its own: no file, nobody else's.
 PIPE = tuple(f"verification/running/pool/{name}.py" for name in ("process_pool", "fork_guard"))
 PLANTED = "verification/credibility/faults/fault_planting.py"
-SCRIPT = "<script>alert(1)</script><img src=x onerror=alert(1)>{{ 7 * 7 }}{% raw %}]]></style>"
 
 
 def called(node: ast.Call) -> str:
@@ -82,47 +75,6 @@ def test_untrusted_toml_is_read_in_one_place_only():
     readers = {path.name for path in SOURCES if "tomllib" in path.read_text(encoding="utf-8")}
     # the command line reads its own table of commands
     assert readers == {"toml_file.py", "cli.py"}
-
-
-class Tags(HTMLParser):
-    def __init__(self):
-        super().__init__()
-        self.count, self.handlers = {}, []
-
-    def handle_starttag(self, tag, attrs):
-        self.count[tag] = self.count.get(tag, 0) + 1
-        self.handlers += [name for name, _ in attrs if name.startswith("on")]
-
-
-def tags_of(page: str) -> Tags:
-    tags = Tags()
-    tags.feed(page)
-    return tags
-
-
-def page_of(text: str) -> str:
-    """The page of a failed case in which every text is ``text``."""
-    case = parse_case(QUICK.encode(), Path("mine.toml"))
-    result = failed(case, text, 1.0)
-    claim = replace(result.verdicts[0][0], why=text, quantity=text, line=text, between=(text, text))
-    result = replace(
-        result,
-        name=text,
-        title=text,
-        source=text,
-        text=text,
-        sources=(SourceResult(text, 1.0, text, {text: text}, ((text, text, 1.0),)),),
-        verdicts=((claim, Verdict(Outcome.NO_RESULT, text)),),
-    )
-    return render(Material([result], RunInfo(text, text, 1.0, 1, text, text, {text: text})))
-
-
-def test_text_of_a_stranger_stays_text_in_the_page():
-    plain, strange = tags_of(page_of("plain")), tags_of(page_of(SCRIPT))
-    assert strange.count == plain.count
-    assert strange.handlers == plain.handlers
-    assert "{{ 7 * 7 }}" in page_of(SCRIPT)
-    assert "<script>alert" not in page_of(SCRIPT)
 
 
 NAMES = [

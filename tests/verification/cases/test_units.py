@@ -1,8 +1,6 @@
 """Numbers with a unit: exact in their digits, refused with key and unit otherwise."""
 
 import re
-import subprocess
-import sys
 from decimal import Decimal
 from pathlib import Path
 
@@ -13,10 +11,8 @@ from hypothesis import strategies as st
 from pint import UnitRegistry
 
 from verification.cases.case_file import parse_case
-from verification.cases.published_file import parse_published
 from verification.cases.toml_file import CaseError
 from verification.cases.unit_numbers import METRIC
-from verification.guests.guest_description import parse_guest
 from verification.study.study_plan import parse_study
 
 BARE = case_text("E = 450e9; nu = 0.22; thickness = 3e-6")
@@ -142,64 +138,6 @@ def test_study_files_have_units():
     assert study.criteria.strengths(1.0) == {"sigma_xx_surface": 2.5e9}
     listed = STUDY.replace('{ from = "1 um", to = "0.01 mm", count = 3 }', '["1 um", 2e-6]')
     assert parse_study(listed.encode(), Path("dlc.toml")).thicknesses == (1e-6, 2e-6)
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "key"),
-    [
-        ('"1 um"', '"1 N"', "sweep.thickness.range.from"),
-        ('{ from = "1 um", to = "0.01 mm", count = 3 }', '["1 N"]', "sweep.thickness.list.0"),
-        ('"2.5 GPa"', '"2.5 um"', "criteria.strength.sigma_xx_surface"),
-        ('thickness = { from = "1 um"', 'thickness_over_a_h = { from = "1 um"', "sweep.thickness_over_a_h"),
-    ],
-)
-def test_study_files_name_the_key_of_a_wrong_unit(old, new, key):
-    assert old in STUDY
-    with pytest.raises(CaseError, match=re.escape(f"dlc.toml: {key}")):
-        parse_study(STUDY.replace(old, new).encode(), Path("dlc.toml"))
-
-
-PUBLISHED = """
-title = "Disc"
-source = "somebody (1990)"
-year = 1990
-problem = { length_unit = "mm", stress_unit = "MPa", PROBLEM }
-[[table]]
-file = "t.csv"
-seen = "primary"
-read = "the table"
-at = { z = "depth", unit = "mm" }
-column = [ { name = "s", quantity = "sigma_zz", unit = "MPa", factor = -1.0 } ]
-"""
-BARE_DISC = """pressure = 0.7, load_radius = 150.0, substrate = { E = 50.0, nu = 0.4 },
- coatings = [ { E = 500.0, nu = 0.3, thickness = 200.0 } ]""".replace("\n", "")
-UNITS_DISC = """pressure = "700 kPa", load_radius = "15 cm", substrate = { E = "0.05 GPa", nu = 0.4 },
- coatings = [ { E = 500.0, nu = 0.3, thickness = "0.2 m" } ]""".replace("\n", "")
-
-
-def test_published_files_have_units_beside_numbers_in_those_of_the_source(tmp_path):
-    (tmp_path / "t.csv").write_text("depth,s\n0,0.700\n100,0.500\n")
-    bare, units = (
-        parse_published(PUBLISHED.replace("PROBLEM", disc).encode(), tmp_path / "disc.toml").problem
-        for disc in (BARE_DISC, UNITS_DISC)
-    )
-    assert units.coatings[0] == pytest.approx(bare.coatings[0], rel=1e-15, abs=0)
-    for name in ("pressure", "load_radius", "substrate"):
-        assert getattr(units, name) == pytest.approx(getattr(bare, name), rel=1e-15, abs=0)
-
-
-def test_guest_files_have_a_unit_of_time(tmp_path):
-    text = 'name = "mine"\ncallable = "adapter:solve"\ntime_limit = "2 min"\n'
-    (tmp_path / "adapter.py").write_text("")
-    assert parse_guest(text.encode(), tmp_path / "guest.toml").time_limit == 120.0
-    with pytest.raises(CaseError, match=r"guest\.toml"):
-        parse_guest(text.replace("2 min", "2 m").encode(), tmp_path / "guest.toml")
-
-
-def test_bare_numbers_do_not_import_pint():
-    code = "import sys; from verification.commands.shipped.list_cases import list_cases; list_cases(); "
-    code += "assert 'pint' not in sys.modules"
-    subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, timeout=60)
 
 
 @pytest.mark.parametrize(("unit", "name"), [(unit, name) for unit, names in METRIC.items() for name in names])

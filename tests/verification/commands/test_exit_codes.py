@@ -10,8 +10,7 @@ from importlib import import_module
 import pytest
 from quick_case import COMMAND, QUICK, coatcheck
 
-from verification.cases.case_file import read_case, shaped_cases, shipped_cases
-from verification.cases.published_file import published_cases
+from verification.cases.case_file import read_case
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.regression.run_exit_codes import exit_code
 from verification.running.case_result import CaseResult
@@ -88,15 +87,6 @@ def test_exit_code_is_that_of_the_worst_outcome(outcomes, code):
         for outcome in outcomes
     ]
     assert exit_code(results) == code
-
-
-def test_help_and_list_answer_quickly_and_well(tmp_path):
-    for words in (["--help"], ["run", "--help"], ["list"], ["--version"]):
-        done = coatcheck(*words, cwd=tmp_path)
-        assert done.returncode == 0
-        assert done.stdout.strip()
-    names = [row["name"] for row in json.loads(coatcheck("list", "--json", cwd=tmp_path).stdout)]
-    assert names == [*shipped_cases(), *shaped_cases(), *published_cases()]
 
 
 def test_missing_system_library_names_the_packages_and_writes_nothing(tmp_path):

@@ -90,17 +90,6 @@ def test_a_solid_may_have_a_name(name):
     assert stack(case).endswith(f" / {name}")
 
 
-@pytest.mark.parametrize("suffix", [".pdf", ".svg"])
-def test_figure_has_the_format_of_its_name(suffix, tmp_path):
-    from verification.desk.answer_figure import write
-    from verification.problem.coated_contact import CoatedContact
-
-    problem = CoatedContact(10e-3, 20.0, ((420e9, 0.3, 3e-5),), (210e9, 0.3), 0.2)
-    path = tmp_path / f"stress{suffix}"
-    write(desk.answer(problem, "semianalytic"), "A title with <b> and $", path)
-    assert path.read_bytes()[:4] == {".pdf": b"%PDF", ".svg": b"<?xm"}[suffix]
-
-
 def test_check_shows_the_differences_and_fails_beyond_both_uncertainties(tmp_path, monkeypatch):
     def made(problem, source, *_):
         found = desk.answer(problem, "hertz")

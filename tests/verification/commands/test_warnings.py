@@ -3,12 +3,10 @@
 import json
 from dataclasses import replace
 
-import pytest
 from case_texts import case_text
 from quick_case import coatcheck
 from synthetic_results import INFO, contact, result_of
 
-from verification.commands.common.command_error import CommandError
 from verification.commands.common.terminal import print_warnings
 from verification.report.report_material import Material
 from verification.report.report_page import render
@@ -25,12 +23,6 @@ def test_warnings_are_lines_on_standard_error(capsys):
     ]
     print_warnings((LINE,), "mine", strict=False, silent=True)
     assert capsys.readouterr().err == ""
-
-
-def test_strict_refuses(capsys):
-    with pytest.raises(CommandError, match=f"^mine: {LINE}$") as error:
-        print_warnings((LINE,), "mine", strict=True, silent=True)
-    assert error.value.code == 2
 
 
 def test_result_and_page_have_them():

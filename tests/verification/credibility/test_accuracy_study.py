@@ -23,8 +23,6 @@ from verification.judging.invariants.influence_error import conversion_errors
 from verification.judging.outcome import Outcome
 from verification.regression.run_exit_codes import EXIT
 from verification.running.checked_files import StoreError, write_checked
-from verification.running.pool.pool_task import Task
-from verification.running.pool.process_pool import run_tasks
 from verification.sources.method_sources import solve_semianalytic
 
 
@@ -160,16 +158,6 @@ def test_study_is_kept_for_the_very_same_code_only(tmp_path):
     with pytest.raises(StoreError, match=r"accuracy\.json: "):
         accuracy_study.stored(tmp_path)
     assert accuracy_study.stored(tmp_path / "elsewhere") is None
-
-
-def test_process_that_dies_leaves_its_reason(tmp_path):
-    task = accuracy_study.task(tmp_path)
-    broken = Task(
-        task.name, partial(import_module, "verification.no_such_module"), task.path, task.read, task.failed
-    )
-    (found,) = run_tasks([broken], jobs=1, time_limit=60)
-    assert found.refinements == ()
-    assert "code 1" in found.failures[0]
 
 
 @pytest.fixture

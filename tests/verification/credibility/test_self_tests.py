@@ -1,22 +1,15 @@
 """The harness answers what is known of it, and a run says so when it does not."""
 
 import pytest
-from synthetic_results import INFO, contact, result_of
+from synthetic_results import contact, result_of
 
 from verification.credibility import self_tests as room
 from verification.credibility.faults.fault_catalogue import FAULTS
 from verification.credibility.faults.fault_planting import planted
-from verification.credibility.self_tests import SelfTest, self_tests
+from verification.credibility.self_tests import self_tests
 from verification.judging.verdict import Outcome
 from verification.regression.baseline_change import Regression
 from verification.regression.run_exit_codes import EXIT, run_code
-from verification.report.credibility.detection_sections import self_tests_of
-from verification.report.report_material import Evidence, Material
-
-PASSED = SelfTest("judging", "verdicts are what they must be", True, "21 known answers")
-FAILED = SelfTest(
-    "judging", "verdicts are what they must be", False, "NaN: AGREES, where it has to be NO_RESULT"
-)
 
 
 @pytest.mark.parametrize("test", self_tests(), ids=lambda test: test.name)
@@ -45,11 +38,3 @@ def test_a_run_is_no_better_than_its_harness(tmp_path):
     assert run_code([agreeing], nothing, passed=False) == EXIT[Outcome.DISAGREES]
     lost = result_of(contact(), failures={"semianalytic": "did not converge"})
     assert run_code([lost], nothing, passed=False) == EXIT[Outcome.NO_RESULT]
-
-
-def test_the_report_says_which_answer_was_wrong():
-    shown = self_tests_of(Material([], INFO, Evidence(self_tests=(PASSED, FAILED))))
-    assert shown is not None
-    (failure,) = shown.failures
-    assert FAILED.found in failure
-    assert len(shown.parts[0].tables[0].rows) == 2

@@ -1,4 +1,4 @@
-"""Slips that people make, planted in exact answers: each is named in one message."""
+"""Slips beyond the ten of ``test_common_slips``, planted in exact answers: each is named in one message."""
 
 from dataclasses import replace
 
@@ -15,7 +15,6 @@ from verification.problem.coated_contact import CoatedContact
 from verification.sources.exact_sources import solve_exactly
 
 HERTZ, COATED, SLIDING = "01_uncoated_steel", "05_ratio_4", "14_ratio_4_sliding"
-SIGMA = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xz")
 
 
 @pytest.fixture(scope="module")
@@ -74,22 +73,6 @@ def every(quantities, function):
     return change
 
 
-def swapped(first, second):
-    def change(values, places):
-        for numbers in values.values():
-            if first in numbers and second in numbers:
-                numbers[first], numbers[second] = numbers[second], numbers[first]
-
-    return change
-
-
-def halved_cell(values, places):
-    x = places["surface"]
-    values["surface"]["pressure"] = np.interp(
-        x - 0.5 * np.median(np.diff(x)), x, values["surface"]["pressure"]
-    )
-
-
 def edge_only(values, places):
     x, a = places["surface"], values["contact"]["contact_radius"]
     near = np.abs(np.abs(x) - a) < 0.05 * a
@@ -110,17 +93,8 @@ def test_right_answers_have_no_slips(exams, case):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (scaled("contact", "peak_pressure", 1e6), ["peak_pressure", "1e+06", "MPa", "Pa"]),
-        (scaled("contact", "contact_radius", 1e3), ["contact_radius", "mm"]),
-        (scaled("contact", "contact_radius", 2.0), ["contact_radius", "diameter"]),
-        (scaled("contact", "peak_pressure", 2 / 3), ["peak_pressure", "mean"]),
         (scaled("contact", "approach", -1.0), ["approach", "sign"]),
-        (every(["pressure"], lambda v, x: 1e-6 * v), ["pressure", "MPa"]),
-        (every(SIGMA, lambda v, x: -v), ["sigma_xx", "sign", "compression"]),
         (every(["sigma_xx"], lambda v, x: 0 * v), ["sigma_xx", "zero"]),
-        (swapped("sigma_xx", "sigma_zz"), ["sigma_zz", "transposed"]),
-        (swapped("sigma_xx", "sigma_yy"), ["sigma_yy", "transposed"]),
-        (halved_cell, ["pressure", "shifted", "half"]),
         (edge_only, ["pressure", "edge"]),
         (doubled_positions, ["pressure", "halved"]),
         (every(["sigma_xx"], lambda v, x: v + 3e8), ["sigma_xx", "3e+08"]),
@@ -149,23 +123,6 @@ def test_a_slip_of_the_input_of_hertz_is_one_message(exams, change, words):
     found = messages(exams, HERTZ, lambda values, places: of_problem(case, exam, wrong))
     assert len(found) == 1
     assert words in found[0]
-
-
-def test_sliding_in_the_other_direction_is_mirrored(exams):
-    def change(values, places):
-        x = places["surface"]
-        for quantity in ("sigma_xx", "sigma_yy"):
-            values["surface"][quantity] = np.interp(-x, x, values["surface"][quantity])
-
-    assert "exchanged" in messages(exams, SLIDING, change)[0]
-
-
-def test_the_other_side_of_an_interface_is_named(exams):
-    def change(values, places):
-        upper, lower = (values[f"interface 1, {side} side"] for side in ("upper", "lower"))
-        upper["sigma_xx"], lower["sigma_xx"] = lower["sigma_xx"], upper["sigma_xx"]
-
-    assert "layer" in messages(exams, COATED, change)[0]
 
 
 def test_a_largest_tension_in_the_zone_that_is_left_out_is_not_asked_for(exams):

@@ -20,8 +20,6 @@ from verification.running.case_result import CaseResult, to_json
 from verification.running.stored_run import read_run
 
 DECIDE = "verification.running.contact_run:decide"
-POSITIONS = "verification.sampling.line_sampling:positions"
-LAWS = "verification.judging.invariants.solution_invariants:_laws"
 TENFOLD = Edit(DECIDE, "scale = divisor(", "scale = (1 if claim.line == 'contact' else 10) * divisor(")
 ZONE = "np.abs(np.abs(a.position) - edge) < claim.edge * edge"
 

@@ -11,12 +11,9 @@ from synthetic_study import conversion, elements, study
 
 from verification.credibility.accuracy_study import failed
 from verification.credibility.refinement_studies import QUANTITIES
-from verification.page.number_text import factor
-from verification.page.svg_loglog import Trail, decades, draw_loglog
 from verification.report.report_material import Evidence, Material
 from verification.report.report_page import render
 from verification.report.sections.refinement_section import finite_element_section, semianalytic_section
-from verification.sources.source_record import Style
 
 
 def material(found, results=()) -> Material:
@@ -33,10 +30,6 @@ def page():
     return render(material(study(), [result_of(contact(), points=11)]))
 
 
-def text_of(sections) -> str:
-    return " ".join(part.text for section in sections for part in section.parts)
-
-
 def test_without_a_study_there_is_no_section():
     assert 'id="semi-analytical-accuracy"' not in render(Material([result_of(contact(), points=11)], INFO))
 
@@ -49,19 +42,6 @@ def test_every_quantity_has_a_figure_with_every_curve(page):
     assert len(identifiers) == len(set(identifiers))
     figures = re.findall(r'<svg class="figure"[^>]*logarithmic".*?</svg>', page, re.DOTALL)
     assert [len(re.findall(r'class="s-(?!grid)', figure)) for figure in figures] == [5] * 5 + [3] * 5
-
-
-def test_slopes_are_written_beside_the_curves(page):
-    figure = re.search(r'<svg[^>]*aria-label="error of p_0 over N.*?</figure>', page, re.DOTALL)[0]
-    # N^-4 ends at its floor; the plain conversion falls by less than a factor of three.
-    for slope in ("−1.0", "−5.0", "–"):
-        assert f">{slope}</text>" in figure
-
-
-def test_numbers_stand_in_tables(page):
-    cells = Document(page).whole("td")
-    for number in (f"{33.0**-4:.1e}", f"{200.0**-4:.1e}", "2.0e-12", "1.6e-1"):
-        assert number.replace("e-0", "e-").replace("e-", "·10−") in cells
 
 
 def test_what_failed_is_said_in_its_section():
@@ -112,32 +92,3 @@ def test_no_number_whatever_keeps_a_report_from_being_written():
             for one in whole.conversions
         )
         Document(render(material(replace(whole, refinements=studies, conversions=conversions))))
-
-
-def test_scales_hold_every_point_off_the_frame():
-    style = Style("semi")
-    low, high = decades([Trail((1.0, 10.0), (1e-3, 1e-7), style)])
-    assert (low, high) == (-8.0, -2.0)
-    assert decades([]) == (-10.0, 0.0)
-    figure = draw_loglog(
-        [Trail((1.0, 10.0), (1e-3, float("nan")), style, "–")],
-        label="l",
-        coordinate="N",
-        height=(low, high),
-        ticks=(1, 10),
-    )
-    assert figure.count("h0") == 1
-
-
-@pytest.mark.parametrize(
-    ("worse", "better", "said"),
-    [
-        (3.25, 1, "3.2"),
-        (4567, 1, "4600"),
-        (1, 1e-9, "1.0e9"),
-        (1, 0, "undefined"),
-        (float("nan"), 1, "undefined"),
-    ],
-)
-def test_factor_has_two_digits(worse, better, said):
-    assert factor(worse, better) == said

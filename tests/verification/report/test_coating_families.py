@@ -1,13 +1,9 @@
 """The plots of one coating at several moduli: which cases make a family, and what is drawn of it."""
 
-from dataclasses import replace
-
-import numpy as np
 import pytest
 from synthetic_results import INFO, contact, result_of
 
 from verification.report.report_material import Material
-from verification.report.report_page import render
 from verification.report.sections.family_section import section
 
 
@@ -56,14 +52,3 @@ def test_each_friction_has_a_family_of_its_own(frictionless):
     sliding = [member(ratio, friction=0.25, name=f"sliding_{ratio:g}") for ratio in (0.5, 1, 2)]
     section = family_section([*sliding, *frictionless])
     assert len(section.parts) == 2
-
-
-def test_no_number_keeps_the_page_from_being_written(frictionless):
-    spoilt = [
-        replace(
-            result, profiles=tuple(replace(p, value=np.full_like(p.value, np.nan)) for p in result.profiles)
-        )
-        for result in frictionless
-    ]
-    assert "Pressure" in render(Material(spoilt, INFO))
-    assert family_section([replace(result, problem={}) for result in frictionless]) is None

@@ -12,9 +12,9 @@ from markupsafe import Markup
 from synthetic_results import STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
-from verification.page.number_text import aligned, engineering, scientific, seconds
+from verification.page.number_text import aligned
 from verification.page.source_labels import OUTCOMES, pair_style, source_style
-from verification.page.svg_curves import FLOOR, LOWER, UPPER, Curve, Difference, draw
+from verification.page.svg_curves import UPPER, Curve, Difference, draw
 from verification.page.svg_plot import Axes, drawing, polyline
 from verification.page.symbol_text import drawn, typeset, unicode
 from verification.report.figures import line_panels
@@ -29,23 +29,6 @@ from verification.report.tables.case_tables import (
 from verification.report.tables.line_csv import line_csv
 
 COATED = contact((2 * STEEL[0], 0.3, 1.0))
-
-
-@pytest.mark.parametrize(
-    ("value", "unit", "shown"),
-    [
-        (4.2e11, "Pa", "420 GPa"),
-        (1e-3, "m", "1 mm"),
-        (86.6239e-6, "m", "86.62 µm"),
-        (999.96e-9, "m", "1000 nm"),
-        (-2.5e6, "Pa", "−2.5 MPa"),
-        (0.0, "N", "0 N"),
-        (nan, "Pa", "nan Pa"),
-        (5e-20, "m", "5e-05 fm"),
-    ],
-)
-def test_engineering_prefix(value, unit, shown):
-    assert engineering(value, unit) == shown
 
 
 @pytest.mark.parametrize(
@@ -82,14 +65,6 @@ def test_symbols_are_typeset_and_strangers_words_escaped():
     shifts = [float(shift) for shift in re.findall(r'dy="([^"]*)em"', drawn("p_h + 1"))]
     sizes = [0.78, 1.0]
     assert sum(shift * size for shift, size in zip(shifts, sizes, strict=True)) == pytest.approx(0, abs=0.01)
-
-
-def test_fractions_and_times_are_short():
-    assert scientific(3.14e-5) == "3.1e-5"
-    assert scientific(-3.14e-5, sign=True) == "−3.1e-5"
-    assert scientific(3.14e-5, sign=True) == "+3.1e-5"
-    assert [scientific(x) for x in (None, 0.0)] == ["–", "0"]
-    assert [seconds(x) for x in (0.4321, 12.34, 125.0, None)] == ["0.43 s", "12.3 s", "2 min 05 s", "–"]
 
 
 def test_the_best_reference_is_the_last_exact_one_that_gave_a_result():
@@ -223,14 +198,6 @@ def test_a_figure_tells_its_curve_to_a_tenth_of_a_unit():
     assert start == pytest.approx([left, top + height * 1.06 / 1.12], abs=0.1)
     assert sum(steps[0::2]) == pytest.approx(width, abs=0.15)
     assert sum(steps[1::2]) == pytest.approx(-height / 1.12, abs=0.15)
-
-
-def test_differences_below_the_floor_are_drawn_on_it():
-    text = figure(np.full(60, 1e-12))
-    pair = [part for part in text.split("<path")[1:] if "s-pair" in part]
-    height = float(pair[-1].split('d="M')[1].split("l")[0].split()[1])
-    assert height == pytest.approx(LOWER[1] + LOWER[3], abs=0.1)
-    assert FLOOR == 1e-9
 
 
 def test_labels_are_text_not_markup():

@@ -12,11 +12,10 @@ from verification.cases.published_table import FOLDER
 from verification.judging.verdict import Outcome
 from verification.problem.coated_contact import PrescribedLoad
 from verification.problem.evaluation_points import Points
-from verification.running.case_result import from_json, to_json
 from verification.running.published_run import failed, run
 from verification.sampling.point_values import values
 from verification.sources.limit_extrapolation import extrapolated
-from verification.sources.source_registry import PUBLISHED, solvers
+from verification.sources.source_registry import solvers
 
 SHIPPED = published_cases()
 DISC = PrescribedLoad(1e6, 0.1, (), (1e9, 0.3))
@@ -153,16 +152,6 @@ def test_a_method_that_fails_leaves_its_sentence():
     assert {v.outcome for _, v in result.verdicts} == {Outcome.NO_RESULT}
     assert all("today" in v.reason for c, v in result.verdicts if "semianalytic" in c.between)
     assert failed(case, "was killed", 1.0).outcome is Outcome.NO_RESULT
-
-
-def test_result_survives_json(disc):
-    case = read_published(SHIPPED["ellea1_halfspace_axis"])
-    case = replace(case, claims=tuple(c for c in case.claims if "semianalytic" in c.between))
-    result = run(case, {"semianalytic": semianalytic})
-    back = from_json(to_json(result))
-    assert to_json(back) == to_json(result)
-    assert back.published["columns"][0]["text"][0] == "0.9349"
-    assert back.profile_of["sigma_xx", case.columns[0].profile.line, PUBLISHED] is not None
 
 
 def test_incompressible_solid_is_reached_by_extrapolation():

@@ -67,6 +67,7 @@ def test_every_kth_point_is_checked_by_both_others():
         ("modulus_ratio = [0.5, 2.0]", "modulus_ratio = []", "sweep.modulus_ratio"),
         ("modulus_ratio = [0.5, 2.0]", "modulus_ratio = [5e4]", "5e+04"),
         ("[2e-5, 4e-5, 8e-5]", "[2e-5, 4.0]", "sweep.thickness"),
+        ("[2e-5, 4e-5, 8e-5]", '["1 N"]', "sweep.thickness.list.0"),
         ("[2e-5, 4e-5, 8e-5]", "{ from = 2e-5, to = 1e-5, count = 3 }", "sweep.thickness"),
         ("[2e-5, 4e-5, 8e-5]", "[2e-5]\nthickness_over_a_h = [1.0]", "thickness"),
         ("friction = [0.0, 0.25]", "friction = [-0.1]", "sweep.friction.0"),
