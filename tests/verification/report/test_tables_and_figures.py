@@ -19,11 +19,13 @@ from verification.page.svg_plot import Axes, drawing, polyline
 from verification.page.symbol_text import drawn, typeset, unicode
 from verification.report.figures import line_panels
 from verification.report.figures.line_panels import case_figures
+from verification.report.figures.problem_sketch import sketch
 from verification.report.sections.accuracy_section import accuracies, coverage_table
 from verification.report.tables.case_lookup import contact_radius, difference, judged, reference_source
 from verification.report.tables.case_tables import (
     comparison_table,
     contact_tables,
+    facts,
     failing_table,
 )
 from verification.report.tables.line_csv import line_csv
@@ -97,6 +99,22 @@ def test_contact_table_states_the_true_difference():
     gap = rows["semi-analytical – integral equation"].cells[0].sort
     assert gap == pytest.approx(abs(ours / theirs - 1), rel=1e-12, abs=0)
     assert "(" in rows["semi-analytical"].cells[0].text
+
+
+@pytest.mark.parametrize(
+    ("indenter", "shown"),
+    [
+        (("ellipsoid", (18e-3, 5.5e-3)), "ellipsoid, R_x = 18 mm, R_y = 5.5 mm"),
+        (("lobes", (3, 3e-8, 8.6e-5)), "lobed sphere, lobes = 3, amplitude = 30 nm, at = 86 µm"),
+    ],
+)
+def test_an_indenter_is_not_called_a_sphere(indenter, shown):
+    result = result_of(contact(), points=5)
+    assert "sphere radius R" in dict(facts(result))
+    shaped = replace(result, problem=result.problem | {"indenter": indenter})
+    assert dict(facts(shaped))["indenter"] == shown
+    assert "sphere radius R" not in dict(facts(shaped))
+    assert "rigid sphere" not in sketch(shaped)
 
 
 def test_failing_verdicts_lead_their_table_and_every_quantity_has_a_row():

@@ -8,7 +8,7 @@ from markupsafe import Markup
 from verification.page.html_page import rendered
 from verification.page.number_text import engineering, plain
 from verification.problem.coated_contact import BALL
-from verification.report.tables.case_lookup import contact_radius, layers, scale
+from verification.report.tables.case_lookup import INDENTERS, contact_radius, layers, scale
 from verification.running.case_result import CaseResult
 
 HTML = Path(__file__).parents[1] / "html"
@@ -70,8 +70,10 @@ def sketch(result: CaseResult) -> Markup:
 
 
 def _ball(result: CaseResult) -> tuple[str, str]:
-    """What the sphere is, in two lines."""
+    """What the sphere or other indenter is, in two lines."""
     found = layers(result, BALL)
+    if indenter := result.problem.get("indenter"):
+        return f"rigid {INDENTERS[indenter[0]]}, its", "radius not to scale"
     if not found:
         return "rigid sphere, its", "radius not to scale"
     coats, (E, nu, _) = len(found) - 1, found[-1]

@@ -14,6 +14,8 @@ from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import CaseResult
 from verification.sources.source_registry import METHODS, REFERENCES
 
+# By their shape in a problem.
+INDENTERS = {"ellipsoid": "ellipsoid", "asperities": "pair of asperities", "lobes": "lobed sphere"}
 GROUPS = ("contact", "surface", "axis", "interfaces", "off plane")
 _GROUP_OF = {"contact": GROUPS[0], "oblique": GROUPS[4], "oblique surface": GROUPS[4]}
 

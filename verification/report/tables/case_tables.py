@@ -12,9 +12,10 @@ from verification.page.number_text import aligned, engineering, plain, scientifi
 from verification.page.page_parts import Cell, Table, number, outcome_cell, row, table_of
 from verification.page.source_labels import OUTCOMES, pair_label, row_css, source_label, symbol_of
 from verification.problem.coated_contact import BALL, FLAT
+from verification.problem.indenter_shape import SHAPES
 from verification.problem.quantity import BALL_PEAKS, PEAKS, QUANTITIES, SCALARS, SLOPES, unit_of
 from verification.report.report_words import stated
-from verification.report.tables.case_lookup import coordinate, layers, scalar, scale
+from verification.report.tables.case_lookup import INDENTERS, coordinate, layers, scalar, scale
 from verification.running.case_result import CaseResult
 
 NO_RESULT = Cell("no result", css="no-result")
@@ -35,9 +36,20 @@ _FACTS = {
 def facts(result: CaseResult) -> list[tuple[str, str]]:
     """(name, value) of each parameter and each Hertz scale of a problem."""
     given = {"friction": 0.0} | result.problem
-    return [
+    indenter = given.get("indenter")
+    texts, found = _FACTS, []
+    if indenter:
+        # all numbers but that of the lobes are lengths
+        shape, numbers = indenter
+        shown = [
+            f"{name} = {plain(value) if name == 'lobes' else engineering(value, 'm')}"
+            for name, value in zip(SHAPES[shape], numbers, strict=True)
+        ]
+        found = [("indenter", ", ".join([INDENTERS[shape], *shown]))]
+        texts = _FACTS | {"radius": ("radius R of Hertz's scales", "m")}
+    return found + [
         (text, engineering(given[name], unit) if unit else plain(given[name]))
-        for name, (text, unit) in _FACTS.items()
+        for name, (text, unit) in texts.items()
         if name in given
     ]
 
