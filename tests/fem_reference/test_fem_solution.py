@@ -79,11 +79,6 @@ def test_uncertainty_of_the_displacement_is_that_of_its_direction():
     assert U(np.array([r]), np.array([r]), np.zeros(1))[0] > 0.7 * across[0]
 
 
-def test_a_depth_above_the_surface_is_named():
-    with pytest.raises(ValueError, match="z = -2e-06"):
-        solved("sphere").stress(0.0, 0.0, -2e-6)
-
-
 def test_stress_of_the_far_boundary_bounds_that_of_any_strain_of_its_size():
     state = solved("sphere").state
     missing, stress, _ = state.truncation(0)
@@ -103,15 +98,6 @@ def test_another_friction_needs_no_estimate_and_has_to_be_finite():
         rest.with_friction(float("nan"))
     with pytest.raises(ValueError, match="estimate_uncertainty=True"):
         rest.stress_with_uncertainty(X, Y, Z)
-
-
-@pytest.mark.parametrize("layer", [None, 0, 1])
-def test_stress_with_its_uncertainty_equals_both_apart(layer):
-    s = solved("sphere", 0.25)
-    z = Z if layer is None else np.full(X.shape, COATED[0][2])
-    stress, uncertainty = s.stress_with_uncertainty(X, Y, z, layer)
-    np.testing.assert_array_equal(stress, s.stress(X, Y, z, layer))
-    np.testing.assert_array_equal(uncertainty, s.stress_uncertainty(X, Y, z, layer))
 
 
 # What each cause adds to the uncertainty, where the solutions are compared

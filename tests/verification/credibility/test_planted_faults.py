@@ -16,7 +16,6 @@ from verification.credibility.faults.fault_planting import Constant, Edit, Fault
 from verification.credibility.faults.fault_trial import Trial, clean_path, try_fault
 from verification.evidence.fault_record import Catch, Record, read_record, to_json, write_record
 from verification.judging.verdict import Outcome
-from verification.report.credibility.detection_sections import faults_page
 from verification.running import contact_run as running
 from verification.running.case_result import from_json as result_from_json
 from verification.running.case_result import to_json as result_to_json
@@ -222,35 +221,6 @@ def test_a_record_passes_only_where_enough_is_caught_and_nothing_is_left_unsaid(
     assert lost.share > 0.95
     assert lost.unexplained
     assert not lost.passed
-
-
-def test_the_page_shows_every_fault_and_escapes_what_checks_say():
-    record = _record(
-        _trial("kap_sign"), _trial("load_off", Outcome.AGREES), _trial("no_padding", Outcome.NO_RESULT)
-    )
-    page = faults_page(record)
-    assert all(name in page for name in ("kap_sign", "load_off", "no_padding"))
-    assert "as &lt;it&gt; is" in page
-    assert "<it>" not in page
-    assert "http://" not in page.replace("http://www.w3.org", "")
-    assert "1 of 3" in page
-
-
-@pytest.mark.parametrize(
-    "arguments",
-    [
-        {"names": ("no_such_fault",)},
-        {"group": "no_such_group"},
-        {"group": "frf", "names": ("kap_sign",)},
-        {"group": "frf", "record": True},
-        {"jobs": 0},
-    ],
-)
-def test_a_wrong_question_is_bad_input_and_writes_nothing(arguments, tmp_path, capsys):
-    names = arguments.pop("names", ())
-    assert faults(*names, output=tmp_path / "out", records=tmp_path / "records", **arguments) == 2
-    assert capsys.readouterr().err.count("\n") == 1
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_the_command_tries_resumes_and_writes_matrix_and_page(tmp_path, capsys):

@@ -16,7 +16,6 @@ from verification.regression.run_comparison import compare_runs
 from verification.report.report_material import Material
 from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, RunInfo
-from verification.running.checked_files import StoreError
 from verification.running.stored_run import StoredRun, read_run
 
 E, NU = STEEL
@@ -87,26 +86,6 @@ def test_cases_versions_and_times_of_one_run_only_are_told():
     # what only one of them ran is told by its numbers
     assert found.drifted
     assert found.verdicts == ()
-
-
-@pytest.mark.parametrize(
-    ("content", "said"),
-    [
-        ("", "program"),
-        ("[]", "program"),
-        ('{"run": {}, "cases": []}', "program"),
-        ('{"run": 3, "cases": {}}', "program"),
-        ("[" * 100_000, "program"),
-        (None, "cannot"),
-    ],
-)
-def test_a_file_that_is_no_run_is_one_sentence(tmp_path, content, said):
-    path = tmp_path / "report.json"
-    if content is not None:
-        path.write_text(content)
-    with pytest.raises(StoreError, match=said) as caught:
-        read_run(path)
-    assert str(path) in str(caught.value)
 
 
 def test_a_run_comes_back_from_its_report(tmp_path):

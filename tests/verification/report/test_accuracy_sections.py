@@ -3,7 +3,6 @@
 import re
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from html_document import Document
 from synthetic_results import INFO, contact, result_of
@@ -65,30 +64,3 @@ def test_part_that_is_missing_leaves_the_others():
         Document(render(material(replace(whole, refinements=studies))))
     for conversions in ((), whole.conversions[:1], whole.conversions[1:2], (conversion("new", 4, 1, 1.0),)):
         Document(render(material(replace(whole, conversions=conversions))))
-
-
-def test_no_number_whatever_keeps_a_report_from_being_written():
-    random = np.random.default_rng(3)
-    odd = [1e308, -1e308, 5e-324, float("nan"), float("inf"), -float("inf"), 0.0, -1.0, 1e-30]
-    whole = study()
-    for _ in range(3):
-        studies = tuple(
-            replace(
-                one,
-                levels=tuple(
-                    replace(
-                        level,
-                        resolution=float(random.choice([level.resolution, *odd])),
-                        seconds=float(random.choice(odd)),
-                        errors={q: float(random.choice(odd)) for q in QUANTITIES},
-                    )
-                    for level in one.levels
-                ),
-            )
-            for one in whole.refinements
-        )
-        conversions = tuple(
-            replace(one, error=tuple(float(random.choice(odd)) for _ in one.error), largest=float("nan"))
-            for one in whole.conversions
-        )
-        Document(render(material(replace(whole, refinements=studies, conversions=conversions))))

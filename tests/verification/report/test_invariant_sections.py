@@ -1,19 +1,15 @@
 """Invariants in a result: what they do to its outcome, its files and its page; coverage; parameters."""
 
-import json
 from dataclasses import replace
-from xml.etree import ElementTree
 
 import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
-from verification.regression.junit_xml import junit_xml
 from verification.report.report_material import Material
 from verification.report.sections.invariants_section import invariant_table, section
 from verification.report.tables.case_tables import dominating_parameter
-from verification.running.case_result import from_json, to_json
 
 HOLDS = Invariant("load balance", "semianalytic", 1e-7, 1e-5, Outcome.AGREES, "int p dA = W: off by 1e-07")
 CLOSE = Invariant(
@@ -37,20 +33,6 @@ def test_broken_invariant_makes_the_case_disagree_though_every_comparison_agrees
     assert sound.outcome is Outcome.AGREES
     assert slipped.outcome is Outcome.DISAGREES
     assert replace(sound, invariants=(HOLDS, LOST)).outcome is Outcome.NO_RESULT
-
-
-def test_invariants_survive_strict_json(slipped):
-    text = json.dumps(to_json(slipped), allow_nan=False)
-    assert from_json(json.loads(text)).invariants == slipped.invariants
-
-
-def test_junit_has_a_test_case_for_each_and_fails_where_one_is_broken(slipped):
-    root = ElementTree.fromstring(junit_xml([slipped], INFO).split("\n", 1)[1])
-    names = {case.get("name"): case for case in root.iter("testcase")}
-    assert len(names) == len(slipped.verdicts) + 4
-    assert names["equilibrium, substrate of hertz"].find("failure") is not None
-    assert names["sphere of fem_reference"].find("error") is not None
-    assert len(names["load balance of semianalytic"]) == 0
 
 
 def test_table_begins_with_what_is_broken_then_with_the_closest_to_its_bound(slipped):

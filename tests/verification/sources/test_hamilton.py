@@ -54,15 +54,6 @@ def test_without_friction_it_is_hertz():
     assert (sphere.contact_radius, sphere.approach) == (hertz.contact_radius, hertz.approach)
 
 
-def test_bad_input_is_one_sentence_with_the_quantity(sliding):
-    with pytest.raises(ValueError, match=r"friction = -0\.1"):
-        Hamilton(radius=1.0, load=1.0, E=1.0, nu=0.3, friction=-0.1)
-    with pytest.raises(ValueError, match="radius = 0"):
-        Hamilton(radius=0.0, load=1.0, E=1.0, nu=0.3, friction=0.1)
-    with pytest.raises(ValueError, match="surface"):
-        sliding.stress(0.0, 0.0, -1e-6)
-
-
 def test_it_speaks_about_uncoated_sliding_alone():
     steel, coating = (210e9, 0.3), ((420e9, 0.3, 1e-5),)
     assert sources_of(CoatedContact(1e-2, 20.0, (), steel, 0.25))[-1] == "hamilton"

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 import semianalytic
-from verification.sources.references.hankel_field import HankelField
 from verification.sources.references.uniform_disc import UniformDisc, solve_prescribed
 
 Q, A = 2e6, 0.15
@@ -63,13 +62,6 @@ def test_sides_of_an_interface_differ_in_the_stress_along_it_alone():
     above, below = (found.stress(0.1, 0.0, z, layer=layer) / Q for layer in (0, 1))
     assert above[2] == pytest.approx(below[2], abs=1e-9)
     assert abs(above[0, 0] - below[0, 0]) > 0.1
-
-
-def test_the_quadrature_is_that_of_any_pressure():
-    found = solve_prescribed(**LAYERED)
-    usual = HankelField(found.disc, LAYERED["coatings"], LAYERED["substrate"])
-    assert (found.field.nodes, found.field.tail) == (usual.nodes, usual.tail)
-    assert (found.coarser.nodes, found.coarser.tail) == (0.75 * usual.nodes, 0.75 * usual.tail)
 
 
 def test_a_sliding_disc_is_refused():

@@ -184,12 +184,6 @@ def test_what_a_worker_could_not_answer_is_a_row_now_tried_again_later(tmp_path,
     assert (again.failed, again.done) == (0, 2)
 
 
-def test_limit_takes_the_first_points(tmp_path, client):
-    came = run_study(plan(cross_check="0"), tmp_path, client, solve=made_up, limit=5)
-    assert read_columns(came.table)["point"].tolist() == [0, 1, 2, 3, 4]
-    assert not came.complete
-
-
 def test_a_scheduler_that_is_not_there_is_one_sentence(monkeypatch):
     monkeypatch.setattr(dask_cluster, "CONNECT_WITHIN", 0.2)
     with (
