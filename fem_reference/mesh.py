@@ -202,8 +202,8 @@ def _triangulate(
             f"{_literal(grading.axis_size)}+0.3*{origin}",
         ]
         if grading.surface:  # dr = l cosh(xi) dxi
-            even = f"{_literal(grading.surface * scale)}/Cosh(Min(x,0))"
-            sizes.append(f"{even}+{_literal(_BELOW)}*y+{_literal(_BEYOND)}*Max(0,x)")
+            even = f"({_literal(grading.surface * scale)}+{_literal(_BELOW)}*y)/Cosh(Min(x,0))"
+            sizes.append(f"{even}+{_literal(_BEYOND)}*Max(0,x)")
         for upper, lower in films:
             away = f"Max(0,Max(y-({_literal(lower)}),{_literal(upper)}-y))"
             row = max((lower - upper) / grading.rows, _LEAST_ROW * grading.size)

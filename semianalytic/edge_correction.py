@@ -125,19 +125,28 @@ def _missed_inside(shape: Shape, edge: EdgePatches, p: Array, x: Array, y: Array
 
 
 def _start(problem: LevelProblem, p: Array) -> Shape | None:
-    """Shape to begin with, None where the contact is no single island of some width, away from the rim."""
+    """Shape to begin with, None where the contact is no single island of some width, away from the rim.
+
+    Nor two, each the other's mirror image.
+    """
     grid = problem.grid
-    harmonics = (
+    harmonics: tuple[int, ...] = (
         edge_shape.ROUND if problem.indenter.round else edge_shape.EVEN if grid.quarter else edge_shape.FULL
     )
     whole = grid.whole(p)
-    xs = grid.whole_centres(problem.window)
-    shape = edge_shape.start(whole, xs[0][:, None], xs[1], harmonics, FEW, grid.d**2)
-    if min(shape.axes) < NARROW * grid.d or not _is_island(whole > 0):
+    x, y = grid.whole_centres(problem.window)
+    twin = grid.quarter and not (whole[np.abs(x) < grid.d] > 0).any()
+    if twin:
+        harmonics = edge_shape.HALF
+        whole = np.where(x[:, None] > 0, whole, 0.0)
+    if not _is_island(whole > 0):
+        return None
+    shape = edge_shape.start(whole, x[:, None], y, harmonics, FEW, grid.d**2)
+    if min(shape.axes) < NARROW * grid.d:
         return None
     both = problem.body.response
     layer = LAYER * both.depth / min(shape.axes) if both else np.inf
-    shape = replace(shape, layer=layer if layer < THICK else np.inf)
+    shape = replace(shape, layer=layer if layer < THICK else np.inf, twin=twin)
     return shape.with_terms(_terms(shape, grid.d))
 
 

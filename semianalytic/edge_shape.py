@@ -27,13 +27,14 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter
 
-__all__ = ["EVEN", "FULL", "ROUND", "Shape", "Step", "fitted", "start"]
+__all__ = ["EVEN", "FULL", "HALF", "ROUND", "Shape", "Step", "fitted", "start"]
 
 Array = NDArray[np.floating]
 
 ROUND = (0,)  # harmonics of a contact that is round,
-EVEN = (0, 2, 4, 6)  # even in x and in y,
-FULL = (0, 1, -1, 2, -2, 3, -3, 4, -4, 6, -6)  # any
+EVEN = (0, 2, 4, 6, 8, 10)  # even in x and in y,
+HALF = tuple(range(9))  # even in y, beside its mirror image,
+FULL = (0, *(side * n for n in (1, 2, 3, 4, 6, 8, 9, 10) for side in (1, -1)))  # any
 DAMPING = 0.8  # share of the first step of a fit
 FADED = (
     0.15,
@@ -53,7 +54,8 @@ class Shape:
     (M, k).
 
     outside : f is fitted near the edge alone, where the pressure inside is not smooth, and fades to zero
-    inside.  layer : e, of the width over which q changes at the edge.
+    inside.  layer : e, of the width over which q changes at the edge.  twin : the mirror image at -x counts
+    too.
     """
 
     centre: tuple[float, float]
@@ -63,6 +65,7 @@ class Shape:
     coefficients: Array
     outside: bool = False
     layer: float = np.inf
+    twin: bool = False
 
     @property
     def round(self) -> bool:
@@ -75,7 +78,7 @@ class Shape:
         area = self.axes[0] * self.axes[1]
         if self.contour.any():
             area *= float(np.mean(self.reach(2 * np.pi * np.arange(ANGLES) / ANGLES) ** 2))
-        return float(np.sqrt(area))
+        return float(np.sqrt(2 * area if self.twin else area))
 
     def reach(self, angle: Array) -> Array:
         """s of the edge in the direction ``angle`` of u + iv: t along a ray is nearly 1 - (s/reach)^2."""
@@ -105,7 +108,7 @@ class Shape:
     def inside(self, x: Array, y: Array) -> Array:
         """t at x, y [m], without the harmonic polynomials one by one."""
         (x0, y0), (A, B) = self.centre, self.axes
-        u, v = (x - x0) / A, (y - y0) / B
+        u, v = ((np.abs(x) if self.twin else x) - x0) / A, (y - y0) / B
         t: Array = 1 - u * u - v * v
         if not self.contour.any():
             return t
@@ -119,7 +122,8 @@ class Shape:
     def polynomials(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array, Array]:
         """t, s^2 and H_n, (k,) + points, at x, y [m], broadcast."""
         (x0, y0), (A, B) = self.centre, self.axes
-        return self._in_frame((np.asarray(x, dtype=float) - x0) / A, (np.asarray(y, dtype=float) - y0) / B)
+        x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+        return self._in_frame(((np.abs(x) if self.twin else x) - x0) / A, (y - y0) / B)
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """f [Pa], 0 outside the edge; shape of x, y [m], broadcast."""
@@ -222,7 +226,7 @@ def start(pressure: Array, x: Array, y: Array, harmonics: tuple[int, ...], terms
     loaded = pressure > 0
     count = np.count_nonzero(loaded)
     x, y = (np.broadcast_to(v, loaded.shape)[loaded] for v in (x, y))
-    x0, y0 = (float(v.mean()) if 1 in harmonics else 0.0 for v in (x, y))
+    x0, y0 = (float(v.mean()) if n in harmonics else 0.0 for n, v in ((1, x), (-1, y)))
     u, v = x - x0, y - y0
     A, B = 2 * float(np.sqrt(np.mean(u * u))), 2 * float(np.sqrt(np.mean(v * v)))
     contour = np.zeros(len(harmonics))

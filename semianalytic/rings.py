@@ -18,7 +18,7 @@ Against closed forms: 1e-8 of the peak pressure, at the edge itself too.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 from typing import Protocol
@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from semianalytic.edge_shape import Shape
 
-__all__ = ["Disc", "Node", "RingPressure", "Rings", "SmoothContour", "rings_around", "rings_of"]
+__all__ = ["Disc", "Node", "RingPressure", "Rings", "SmoothContour", "Twins", "rings_around", "rings_of"]
 
 Array = NDArray[np.floating]
 Step = Callable[[float], float]
@@ -72,6 +72,8 @@ def rings_of(shape: Shape, coarser: int = 0) -> "RingPressure":
     angular, radial = 16 + more + terms - 2 * coarser, 8 + more + terms // 4 - coarser
     if shape.round:
         return Disc(shape.axes[0], shape.at_distance, angular, radial)
+    if shape.twin:
+        return Twins(SmoothContour(replace(shape, twin=False), angular, radial))
     return SmoothContour(shape, angular, radial)
 
 
@@ -257,6 +259,31 @@ class SmoothContour:
             even, odd = odd * sin - even * cos, -even * sin - odd * cos
             sums += [even.sum(axis=1), odd.sum(axis=1)]
         return np.array([np.bincount(ring, one, minlength=rho.size) for one in sums])
+
+
+@dataclass(frozen=True, eq=False)
+class Twins:
+    """Pressure with its mirror image at -x."""
+
+    one: SmoothContour
+
+    def pressure(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """p [Pa], 0 outside."""
+        return self.one.pressure(x, y) + self.one.pressure(-np.asarray(x), y)
+
+    def rings(self, x: Array, y: Array, scale: Array) -> Rings:
+        """As in `RingPressure`."""
+        # psi becomes pi - psi: 1, cos psi, sin psi, cos 2 psi, sin 2 psi, cos 3 psi, sin 3 psi
+        signs = np.array([1.0, -1, 1, 1, -1, -1, 1])
+        here, there = self.one.rings(x, y, scale), self.one.rings(-x, y, scale)
+        foot = np.concatenate([here.foot, there.foot])
+        order = np.argsort(foot, kind="stable")
+        return Rings(
+            foot[order],
+            np.concatenate([here.radius, there.radius])[order],
+            np.concatenate([here.weight, there.weight])[order],
+            np.concatenate([here.harmonics, signs[:, None] * there.harmonics], axis=1)[:, order],
+        )
 
 
 @dataclass(frozen=True, eq=False)

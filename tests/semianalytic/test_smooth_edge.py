@@ -261,3 +261,44 @@ def test_punch_with_a_round_edge_is_sneddons(flat):
     places = np.array([0.0, 0.4, 0.9, 0.95, 0.99, 0.999])
     exact = np.array([pressure(r) for r in places])
     assert np.all(np.abs(found.pressure(places) - exact) <= found.pressure_uncertainty(places))
+
+
+def test_asperities_far_apart_carry_half_the_load_each_beside_a_point_force():
+    """Two spheres 16 a apart: each feels the other as a displacement W/2 / (pi E* d), and its slope."""
+    R, load = 1e-2, 20.0
+    a = (0.75 * load / 2 * R / E_STAR) ** (1 / 3)
+    d = 16 * a
+    given = {"coatings": (), "substrate": STEEL, "radius": R}
+    pair = semianalytic.solve(indenter=("asperities", (d,)), load=load, patches=801, **given)
+    one = semianalytic.solve(load=load / 2, **given)
+    assert pair.contact_radius == pytest.approx(2**0.5 * a, rel=2e-4)
+    assert pair.peak_pressure == pytest.approx(one.peak_pressure, rel=2e-4)
+    assert pair.approach == pytest.approx(a**2 / R + load / 2 / (np.pi * E_STAR * d), rel=3e-5)
+    x, y, z = np.array([[-0.6, 0.2, 0.4], [0.3, 0.0, 1.1], [0.0, 0.3, 0.8]]) * a
+    outwards = R * load / 2 / (np.pi * E_STAR * d**2)
+    sum_of_both = one.stress(x - outwards, y, z) + one.stress(x + d + outwards, y, z)
+    stress = pair.stress(x + d / 2, y, z)
+    assert np.abs(stress - sum_of_both).max() < 3e-4 * one.peak_pressure
+    mirrored = pair.stress(-x - d / 2, y, z)
+    mirrored[0, 1:] *= -1
+    mirrored[1:, 0] *= -1
+    np.testing.assert_allclose(mirrored, stress, atol=1e-9 * one.peak_pressure)
+
+
+def test_two_contacts_side_by_side_settle_as_fast_as_one():
+    """Interacting through a coating: p0 within 2e-6 and a within 1e-5 on grids of 257 and 401 patches."""
+    coarse, fine = (
+        semianalytic.solve(
+            indenter=("asperities", (1.5e-4,)),
+            radius=1e-2,
+            load=20.0,
+            coatings=((420e9, 0.25, 5e-5),),
+            substrate=STEEL,
+            patches=patches,
+        )
+        for patches in (257, 401)
+    )
+    for name, tolerance in (("peak_pressure", 2e-6), ("approach", 1e-6), ("contact_radius", 2e-5)):
+        one, other = getattr(coarse, name), getattr(fine, name)
+        assert one == pytest.approx(other, rel=tolerance), name
+        assert abs(one - other) <= getattr(coarse.uncertainty, name) + getattr(fine.uncertainty, name), name
