@@ -44,7 +44,7 @@ WORST_FIRST = (
 )
 MOST_FIGURES, MOST_DIGITS = 12, 15
 ROUNDING = 1e-12
-MOST_REASONS, MOST_REASONS_LISTED = 2, 20
+MOST_REASONS = 2
 GUEST, EXACT = Style("semi"), Style("exact", (), 5.0, 0.35)
 DASHED = ((), DASHES, DOTS, MIXED)
 OWN = ("semi", "fem")
@@ -172,19 +172,7 @@ def _quantities(found: Examined) -> Section:
         ],
         [line for _, line in sorted(rows, key=lambda item: item[0])],
     )
-    parts = [Part("", [table])]
-    if reasons:
-        lines = [
-            row(
-                words(message),
-                words("; ".join(dict.fromkeys(_place(q, line) for _, q, line in places))),
-                words("; ".join(dict.fromkeys(r.title for r, _, _ in places))),
-            )
-            for message, places in reasons[:MOST_REASONS_LISTED]
-        ]
-        title = "What common slips would give, most comparisons first."
-        parts.append(Part("Likely reasons.", [Table(title, ["slip", "explains", "cases"], lines)]))
-    return Section("quantities", "Which quantity is wrong?", parts)
+    return Section("quantities", "Which quantity is wrong?", [Part("", [table])])
 
 
 def _reasons(found: Examined) -> list[tuple[str, list[tuple[CaseResult, str, str]]]]:
@@ -194,10 +182,6 @@ def _reasons(found: Examined) -> list[tuple[str, list[tuple[CaseResult, str, str
         for slip in slips(result, found.guest.name):
             by.setdefault(slip.message, []).extend((result, *place) for place in slip.places)
     return sorted(by.items(), key=lambda item: (item[0].startswith(UNEXPLAINED), -len(item[1])))
-
-
-def _place(quantity: str, line: str) -> str:
-    return quantity if line == "contact" else f"{quantity} on {line}"
 
 
 def _cases(found: Examined) -> Section:

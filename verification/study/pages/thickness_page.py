@@ -6,7 +6,6 @@ No number of the answer has more digits than its uncertainty supports; limits ar
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -34,7 +33,7 @@ from verification.study.pages.study_figures import (
     use_figures,
 )
 from verification.study.study_plan import Study
-from verification.study.study_table import SOURCES, read_columns
+from verification.study.study_table import read_columns
 from verification.study.thickness_curves import Curve, curves, differences
 
 DIGITS = 2  # of a thickness, at most
@@ -268,18 +267,9 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
                 ),
             )
         )
-    columns.append((f"checked at h [{units.length}]", lambda pair: _checked_at(*pair, units)))
-    columns += [
-        (
-            f"difference, {source_label(source)} [{units.stress}]",
-            partial(_difference, source=source, units=units),
-        )
-        for source in SOURCES[1:]
-    ]
     table = table_of(
         "The thicknesses of every curve that are equally good: their largest stress exceeds the smallest by "
-        "no more than the tolerance, 1 % or the error of interpolation. Last: differences of the governing "
-        "stress at the checked thickness nearest to the best one.",
+        "no more than the tolerance, 1 % or the error of interpolation.",
         curves,
         columns,
         row_css=lambda pair: "" if pair[0].admissible or not pair[0].limited else "disagrees",
@@ -300,18 +290,6 @@ def _mode(one: Choice) -> str:
 def _best(j: Judged, one: Choice, units: Units) -> str:
     ends = [edge if end is None else end.h for end, edge in zip(one.even, one.h[[0, -1]], strict=True)]
     return " – ".join(rounded(h * j.curve.a_h / units.metre, 0.0) for h in ends)
-
-
-def _checked_at(j: Judged, one: Choice, units: Units) -> Cell:
-    found = near(j, one.best, _mode(one))
-    return number(found[-1].h * j.curve.a_h / units.metre if found else None, "{:.3g}".format)
-
-
-def _difference(pair: tuple[Judged, Choice], source: str, units: Units) -> float | None:
-    """What ``source`` differs by at the checked thickness nearest to the best one; None without any."""
-    j, one = pair
-    found = {near.source: near.difference for near in near(j, one.best, _mode(one))}
-    return found[source] * j.curve.p_h / units.pascal if source in found else None
 
 
 def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
