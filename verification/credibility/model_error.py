@@ -156,6 +156,8 @@ def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> M
 
     maps : to read the assumptions in that are not evaluated; those of the package if None.
     """
+    if problem.indenter is not None:
+        return ModelError((), tuple((one.title, "it is known for spheres") for one in ASSUMPTIONS.values()))
     maps = _shipped() if maps is None else maps
     costs: list[Cost] = []
     missing: list[tuple[str, str]] = []

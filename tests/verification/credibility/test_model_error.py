@@ -5,6 +5,7 @@ from dataclasses import replace
 import pytest
 
 from verification.credibility.model_error import (
+    ASSUMPTIONS,
     GOODMAN,
     HALF_SPACES,
     PARABOLA,
@@ -37,6 +38,12 @@ def test_contact_as_wide_as_the_sphere_has_no_cost_of_the_parabola_nor_of_the_bo
     assert [assumption for assumption, _ in error.missing] == [PARABOLA, HALF_SPACES, SMALL_STRAINS]
     assert "carried" in error.missing[0][1]
     assert {cost.assumption for cost in error.costs} == {GOODMAN}
+
+
+def test_no_assumption_has_a_cost_under_an_indenter_that_is_no_sphere():
+    error = model_error(replace(BARE, indenter=("ellipsoid", (1e-2, 2e-2))))
+    assert not error.costs
+    assert [assumption for assumption, _ in error.missing] == [one.title for one in ASSUMPTIONS.values()]
 
 
 def test_uncertainty_counts_in_the_comparison_of_costs():
