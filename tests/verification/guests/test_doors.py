@@ -115,8 +115,9 @@ def check_own(method, name, folder):
     inside = inside_verdicts(name, method, exam)
     expected = inside | {(q, PLANE): Outcome.AGREES for q in STRESSES}
     differing = {key for key, outcome in outcomes(function).items() if outcome is not expected[key]}
-    # a guest states its uncertainty at fixed points, which next to the edge is that of the contact radius
-    surfaces = product(("sigma_xx", "sigma_yy", "pressure"), ("surface", "ball, surface"))
+    # a guest states its uncertainty at fixed points, which next to the edge is that of the contact radius:
+    # of the pressure, of the shear f p, of the stresses along the surface
+    surfaces = product(("sigma_xx", "sigma_yy", "sigma_xz", "pressure"), ("surface", "ball, surface"))
     assert differing <= set(surfaces)
     assert {outcomes(function)[key] for key in differing} <= {Outcome.INCONCLUSIVE}
     return function
