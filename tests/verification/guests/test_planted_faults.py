@@ -138,7 +138,10 @@ def test_stresses_of_a_whole_plane_are_interpolated():
 
 
 @pytest.mark.slow
-def test_planted_faults_are_caught_through_the_door(examiner):
-    missed = {fault.name for fault in OF_METHODS if examiner.caught(fault) is None}
-    assert missed <= UNSEEN.keys()
-    assert len(missed) <= 0.05 * len(OF_METHODS)
+@pytest.mark.parametrize("fault", OF_METHODS, ids=lambda fault: fault.name)
+def test_a_planted_fault_is_caught_through_the_door(examiner, fault):
+    assert examiner.caught(fault) is not None or fault.name in UNSEEN
+
+
+def test_at_most_one_planted_fault_of_twenty_is_missed():
+    assert len(UNSEEN.keys() & {fault.name for fault in OF_METHODS}) <= 0.05 * len(OF_METHODS)
