@@ -1,6 +1,7 @@
 """The command line as people expect it: examples, exit codes, completion, plain pipes, a stop that keeps."""
 
 import io
+import json
 import re
 import shutil
 import signal
@@ -82,6 +83,8 @@ def test_names_are_whole_in_a_pipe(tmp_path):
     # Two heads and a line between the tables: no row is folded.
     assert len(lines) == len(names) + 3
     assert "…" not in listed.stdout
+    found = json.loads(coatcheck("list", "--json", cwd=tmp_path).stdout)
+    assert [row["name"] for row in found] == names
 
 
 @pytest.fixture

@@ -127,3 +127,9 @@ def test_bad_files_end_in_one_message(old, new, message):
     with pytest.raises(CaseError) as error:
         parse(FILE.replace(old, new, 1))
     assert message in str(error.value)
+
+
+def test_slip_of_its_unit_is_warned_of():
+    (line,) = parse(FILE.replace('"150 MPa"', "-2.0")).warnings
+    assert "coatings.1.residual_stress" in line
+    assert "GPa" in line
