@@ -39,7 +39,6 @@ def test_options_are_a_case_file():
     [
         ([*WORDS, "--ball-coating", "3 um, 450 GPa, 0.2"], "--ball"),
         (["solve", "05_ratio_4", "--load", "20 N"], "options"),
-        (["solve", "05_ratio_5"], "05_ratio_4"),
         (["solve", "none.toml"], "none.toml"),
         ([*WORDS[:-1], '210 GPa", 0.3'], "problem.substrate.E"),
     ],
