@@ -50,7 +50,7 @@ def displacement(x, y, z, layer=0, *, pressure=DISC, body=BARE):
 
 
 def ellipse(a, b, centre=(0.0, 0.0)):
-    return Shape(centre, (a, b), EVEN, np.zeros(4), np.array([[1.0, 0, 0, 0]]))
+    return Shape(centre, (a, b), EVEN, np.zeros(len(EVEN)), np.eye(1, len(EVEN)))
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, 2.5])
