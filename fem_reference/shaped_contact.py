@@ -172,7 +172,7 @@ def solve_shape(
     indenter : shape and numbers, see ``indenter_height``.  start : p(x, y) [Pa] of arrays [m], by another
     method
     size, surface : of the triangles over their distance from the contact; on the surface below it over its
-    extent.  quality : "fast", "default" or "fine", for those of them and of the ``harmonics`` that are None
+    extent.  quality : "fast", "default" or "fine"; sets size, surface and harmonics that are not given
     Raises ValueError for bad input, NotConverged where the correction does not end.
     """
     began = time.perf_counter()

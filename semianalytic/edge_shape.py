@@ -107,8 +107,7 @@ class Shape:
 
     def inside(self, x: Array, y: Array) -> Array:
         """t at x, y [m], without the harmonic polynomials one by one."""
-        (x0, y0), (A, B) = self.centre, self.axes
-        u, v = ((np.abs(x) if self.twin else x) - x0) / A, (y - y0) / B
+        u, v = self._framed(x, y)
         t: Array = 1 - u * u - v * v
         if not self.contour.any():
             return t
@@ -121,9 +120,12 @@ class Shape:
 
     def polynomials(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array, Array]:
         """t, s^2 and H_n, (k,) + points, at x, y [m], broadcast."""
+        return self._in_frame(*self._framed(np.asarray(x, dtype=float), np.asarray(y, dtype=float)))
+
+    def _framed(self, x: Array, y: Array) -> tuple[Array, Array]:
+        """x and y [m] from the centre over the axes, of two contacts from that of the nearer one."""
         (x0, y0), (A, B) = self.centre, self.axes
-        x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
-        return self._in_frame(((np.abs(x) if self.twin else x) - x0) / A, (y - y0) / B)
+        return ((np.abs(x) if self.twin else x) - x0) / A, (y - y0) / B
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """f [Pa], 0 outside the edge; shape of x, y [m], broadcast."""

@@ -18,6 +18,8 @@ __all__ = ["Neighbours", "Sphere", "hertz_radius"]
 Array = NDArray[np.floating]
 
 STEPS = 0.05, 0.1  # of the load, to the neighbouring contacts
+OF_STEP = 0.5  # of what the extrapolation of the steps changes; of 200 problems none needed 0.4
+LEAST = 1e-7  # relative error of an approach, which two grids may share
 
 
 @dataclass(frozen=True)
@@ -40,8 +42,8 @@ class Sphere:
 class Neighbours:
     """Contacts at loads next to that of a solution.
 
-    level : a coarser grid of the refinement study, whose edge is smooth.  approach, uncertainty : of the
-    finest grid [m], the latter None where it was not estimated.
+    level : of the next coarser grid, at most 513 patches a side, whose edge is smooth.  approach,
+    uncertainty : of the finest grid [m], the latter None where it was not estimated.
     """
 
     sphere: Sphere
@@ -80,9 +82,9 @@ def _stiffness(beside: Neighbours) -> tuple[float, float | None]:
     stiffness = slope * beside.load / beside.approach
     if beside.uncertainty is None:
         return stiffness, None
-    error = abs(slope - slopes[0]) / slope + abs(beside.approach / level.found.approach - 1)
+    error = OF_STEP * abs(slope - slopes[0]) / slope + abs(beside.approach / level.found.approach - 1)
     # those of the approaches, over the smaller of their differences, whose slope has the larger weight
-    error += beside.uncertainty / beside.approach / float(np.log1p(STEPS[0]))
+    error += max(beside.uncertainty / beside.approach, LEAST) / float(np.log1p(STEPS[0]))
     return stiffness, stiffness * error
 
 

@@ -294,6 +294,7 @@ class Solution:
         total = self._change(np.abs(p - second), np.abs(second - third), x, y)
         _, floor = self._companion()
         total = total + self._floor + self._near_ripple(x, y) + floor * self.peak_pressure
+        total = np.maximum(total, self._misfit(x, y, 0.0))
         if self.relative:
             return total
         shift = self.uncertainty.contact_radius
@@ -348,8 +349,7 @@ class Solution:
                 deep = np.minimum(np.asarray(z) / (DEEP[1] * self.diagnostics.patch_size), 1.0)
                 scale = self._scale + DEEP[0] * deep * self.uncertainty.contact_radius / self.contact_radius
                 total = total + least * shallow + np.abs(sigma).max(axis=(0, 1)) * scale
-                distant = (np.square(x) + np.square(y) + np.square(z)) / self.contact_radius**2
-                total = np.maximum(total, MISFIT * self._level.misfit / (1 + distant))
+                total = np.maximum(total, self._misfit(x, y, z))
                 if not self.relative:
                     total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer))
             total = total + RINGS * self.peak_pressure
@@ -392,10 +392,16 @@ class Solution:
         shapes = [level.shape for level in self._levels[:2] if level.shape is not None]
         if len(shapes) < 2:
             return 0.0
-        width = TAPER * self.diagnostics.patch_size / min(shapes[0].axes)
-        s = np.linspace(max(1 - width, 0.0), 1.0, 33)
+        width = min(TAPER * self.diagnostics.patch_size / min(shapes[0].axes), 1.0)
+        s = 1 - width * np.linspace(1.0, 0.0, 33) ** 2
         p = [one.pressure(one.centre[0] + one.axes[0] * s, one.centre[1]) for one in shapes]
         return float(np.abs(p[0] - p[1]).max())
+
+    def _misfit(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """Error [Pa] by what the shape of the pressure misses inside."""
+        distant = (np.square(x) + np.square(y) + np.square(z)) / self.contact_radius**2
+        error: Array = MISFIT * self._level.misfit / (1 + distant)
+        return error
 
     def _to_edge(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Distance of points from a smooth edge [m], about."""

@@ -39,11 +39,12 @@ Ball = tuple[float, float, Coatings]
 
 WIDER_SHAPE = 2.0  # first half-width under an indenter that is no sphere, over Hertz's radius
 LARGEST = 0.9  # contact radius over that of the sphere
+BESIDE = 513  # patches a side of the grid of contacts at neighbouring loads
 ROUGH, ROOMY = (
     49,
     1.5,
 )  # patches a side of the grid that finds the contact radius, and its half-width over that
-FINER, LARGEST_GRID = 1.4, 1025  # patches a side of the next grid over the last; of the last for ``accuracy``
+FINER, LARGEST_GRID = 1.4, 2049  # patches a side of the next grid over the last; of the last for ``accuracy``
 
 
 def solve(
@@ -80,7 +81,7 @@ def solve(
     edge_correction : for the square root of the pressure at the edge (``edge_correction``). False : constant
     patches alone, whose edge is a staircase.
     accuracy : relative uncertainty of contact radius, approach and peak pressure, for which the patches are
-    refined beyond ``patches`` to at most 1025 a side, and until the pressure at the same x/a changes by no
+    refined beyond ``patches`` to at most 2049 a side, and until the pressure at the same x/a changes by no
     more than four times as much of its peak; the solution states what it reached. None : no refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
     indenter : another shape than a sphere, (name, numbers [m]) as in ``indenter_profile``, pressed as by
@@ -145,7 +146,8 @@ def solve(
     solution = Solution.of_levels(levels[-3:], body, estimate, began)
     if levels[-1].shape is None:
         return solution
-    level = next(one for one in levels[-3:] if one.shape)
+    smooth = [one for one in levels if one.shape]
+    level = next((one for one in smooth[-2::-1] if one.grid.n <= BESIDE), smooth[-1])
     error = estimate.approach if estimate else None
     beside = Neighbours(sphere, level, levels[-1].load, solution.approach, error, body, numerics)
     return replace(solution, neighbours=beside)
