@@ -39,6 +39,7 @@ Ball = tuple[float, float, Coatings]
 
 WIDER_SHAPE = 2.0  # first half-width under an indenter that is no sphere, over Hertz's radius
 LARGEST = 0.9  # contact radius over that of the sphere
+LARGE_GRID, FALL = 1025, 3.0  # of the last where refining twice does not lessen the uncertainty so many times
 BESIDE = 513  # patches a side of the grid of contacts at neighbouring loads
 ROUGH, ROOMY = (
     49,
@@ -81,8 +82,9 @@ def solve(
     edge_correction : for the square root of the pressure at the edge (``edge_correction``). False : constant
     patches alone, whose edge is a staircase.
     accuracy : relative uncertainty of contact radius, approach and peak pressure, for which the patches are
-    refined beyond ``patches`` to at most 2049 a side, and until the pressure at the same x/a changes by no
-    more than four times as much of its peak; the solution states what it reached. None : no refinement.
+    refined beyond ``patches`` to at most 2049 a side, 1025 where that stops helping, and until the pressure
+    at the same x/a changes by no more than four times as much of its peak; the solution states what it
+    reached. None : no refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
     indenter : another shape than a sphere, (name, numbers [m]) as in ``indenter_profile``, pressed as by
     ``indent`` over a square that is found; without ``accuracy``.
@@ -133,9 +135,12 @@ def solve(
     if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
         raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
     estimate = uncertainty.of_contact(levels, pressed, body, numerics) if estimate_uncertainty else None
+    reached: list[float] = []
     while estimate and accuracy and edge_correction and not uncertainty.is_met(accuracy, estimate, levels):
         n = odd(FINER * levels[-1].grid.n)
-        if n > LARGEST_GRID:
+        reached.append(estimate.relative_to(levels[-1].scalars))
+        stalled = reached[-1] > accuracy and FALL * reached[-1] > reached[-3:][0]
+        if n > (LARGE_GRID if stalled else LARGEST_GRID):
             break
         grid = replace(levels[-1].grid, n=n, d=2 * half_width / n)
         try:
