@@ -42,11 +42,11 @@ from .state import ElasticState
 
 # Roache's factor of safety for two meshes; `coatcheck alarms` counts how often it is too small.
 SAFETY = 3.0
-# Likewise of the largest difference of a stress around a point: 2.4 was needed once in 500,000 values.
+# Likewise of the largest difference of a stress around a point: 2.4 was needed in one of 100 random problems.
 OF_STRESS = 2.6
-# Times ``SAFETY`` for a pressure at a point: 1.13 was needed once in 15,000 values.
+# Times ``SAFETY`` for a pressure at a point: 1.12 was needed in one of 100 random problems.
 _OF_PRESSURE = 1.2
-# Rounding and interpolation of a stress, over the peak pressure: deep under stacks 4e-8 was needed.
+# Rounding and interpolation of a stress, over the peak pressure: deep in a stack 4e-8 was needed.
 _RECOVERED = 1e-7
 # Triangles above this size do not reach the order of the elements. The factor then grows with the size, that
 # of pressures and stresses with its square: on the axis of a fast solution 2.6 times were needed.

@@ -39,13 +39,14 @@ Ball = tuple[float, float, Coatings]
 
 WIDER_SHAPE = 2.0  # first half-width under an indenter that is no sphere, over Hertz's radius
 LARGEST = 0.9  # contact radius over that of the sphere
-LARGE_GRID, FALL = 1025, 3.0  # of the last where refining twice does not lessen the uncertainty so many times
-BESIDE = 513  # patches a side of the grid of contacts at neighbouring loads
+BESIDE = 513  # patches a side, at most, of the grid of contacts at neighbouring loads
 ROUGH, ROOMY = (
     49,
     1.5,
 )  # patches a side of the grid that finds the contact radius, and its half-width over that
-FINER, LARGEST_GRID = 1.4, 2049  # patches a side of the next grid over the last; of the last for ``accuracy``
+FINER = 1.4  # patches a side of the next grid over the last
+LARGEST_GRID = 2049  # patches a side of the last for ``accuracy``,
+LARGE_GRID = 1025  # and where refining no longer lessens the uncertainty
 
 
 def solve(
@@ -139,8 +140,7 @@ def solve(
     while estimate and accuracy and edge_correction and not uncertainty.is_met(accuracy, estimate, levels):
         n = odd(FINER * levels[-1].grid.n)
         reached.append(estimate.relative_to(levels[-1].scalars))
-        stalled = reached[-1] > accuracy and FALL * reached[-1] > reached[-3:][0]
-        if n > (LARGE_GRID if stalled else LARGEST_GRID):
+        if n > (LARGE_GRID if uncertainty.is_stalled(accuracy, reached) else LARGEST_GRID):
             break
         grid = replace(levels[-1].grid, n=n, d=2 * half_width / n)
         try:
@@ -151,8 +151,7 @@ def solve(
     solution = Solution.of_levels(levels[-3:], body, estimate, began)
     if levels[-1].shape is None:
         return solution
-    smooth = [one for one in levels if one.shape]
-    level = next((one for one in smooth[-2::-1] if one.grid.n <= BESIDE), smooth[-1])
+    level = next((one for one in levels[-2::-1] if one.shape and one.grid.n <= BESIDE), levels[-1])
     error = estimate.approach if estimate else None
     beside = Neighbours(sphere, level, levels[-1].load, solution.approach, error, body, numerics)
     return replace(solution, neighbours=beside)

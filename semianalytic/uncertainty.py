@@ -1,6 +1,7 @@
 """Numerical uncertainty by a refinement study over grids, and by variation of the other numerical
 parameters."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +11,16 @@ from semianalytic.grid import odd
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level
 
-__all__ = ["WIDER", "Uncertainty", "change", "is_met", "of_contact", "other_conversion", "safety"]
+__all__ = [
+    "WIDER",
+    "Uncertainty",
+    "change",
+    "is_met",
+    "is_stalled",
+    "of_contact",
+    "other_conversion",
+    "safety",
+]
 
 WIDER = 1.25  # the box that tests the domain over the box in use
 SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge
@@ -20,6 +30,7 @@ UNRESOLVED = 0.03  # patches by which the edge of a film thinner than two of the
 # over the accuracy asked, of the change of the pressure at the same x/a; the part that is left of the change
 # before: it was seen to fall 2.4 to 10 times from one grid to the next
 PRESSURE, EARLIER = 4.0, 1 / 5
+FALL = 3.0  # of the uncertainty on refining twice, that makes a larger grid worth its time
 PATCHES = 1 / 2  # of the change before, of patches alone, whose edge changes erratically
 
 
@@ -124,6 +135,11 @@ def is_met(accuracy: float, estimate: Uncertainty, levels: list[Level]) -> bool:
     last, before = (_pressure_change(levels[k], levels[k - 1]) for k in (-1, -2))
     change = max(last, EARLIER * before) / levels[-1].scalars["peak_pressure"]
     return estimate.relative_to(levels[-1].scalars) <= accuracy and change <= PRESSURE * accuracy
+
+
+def is_stalled(accuracy: float, reached: Sequence[float]) -> bool:
+    """Whether the relative uncertainties ``reached``, a grid each, exceed the accuracy and no longer fall."""
+    return reached[-1] > accuracy and FALL * reached[-1] > reached[-3:][0]
 
 
 def _pressure_change(fine: Level, coarse: Level) -> float:
