@@ -16,6 +16,7 @@ class Independence(StrEnum):
 
     NOTHING = "methods that share nothing"
     EQUATION = "methods that share an equation"
+    START = "one method starting from the other"
     CLOSED = "closed forms"
     PRINT = "printed tables"
 

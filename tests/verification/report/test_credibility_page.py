@@ -199,5 +199,7 @@ def test_comparisons_are_counted_by_what_their_sources_share():
     assert sum(named) == total
     assert independence(("semianalytic", "integral_equation")) is Independence.EQUATION
     assert independence(("semianalytic", "fem_reference")) is Independence.NOTHING
+    assert independence(("semianalytic", "fem_reference"), shaped=True) is Independence.START
     assert independence(("fem_reference", "hertz")) is Independence.CLOSED
+    assert independence(("fem_reference", "hertz"), shaped=True) is Independence.CLOSED
     assert independence(("fem_reference", "published")) is Independence.PRINT

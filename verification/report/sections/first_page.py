@@ -283,8 +283,10 @@ def _independent(material: Material) -> list[Worth]:
     """Comparisons that agree, by what their two sources have in common."""
     agreed: dict[Independence, list[bool]] = {}
     for result in material.results:
+        shaped = result.problem.get("indenter") is not None
         for claim, verdict in result.verdicts:
-            agreed.setdefault(independence(claim.between), []).append(verdict.outcome is Outcome.AGREES)
+            kind = independence(claim.between, shaped=shaped)
+            agreed.setdefault(kind, []).append(verdict.outcome is Outcome.AGREES)
     return [
         Worth(f"{kind}", _share(agreed[kind]), "#cases", all(agreed[kind]))
         for kind in Independence
