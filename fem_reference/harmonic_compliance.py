@@ -17,6 +17,7 @@ Friction along x, q = f p, has the products with the shape functions of u_r and 
     R_m = f (L_(m-1) + L_(m+1))/2,      T_m = -f (L_(m-1) - L_(m+1))/2,      L_-1 = L_1.
 """
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -72,54 +73,56 @@ class HarmonicCompliance:
         """Solutions, by number, whose weighted sum is that of harmonic m."""
         return _weights(self.solved, m)
 
-    def nodal_loads(self, x: np.ndarray, y: np.ndarray, forces: np.ndarray) -> np.ndarray:
-        """L of ``forces`` (points, columns) at points of the surface, (harmonics, nodes, columns)."""
-        onto = self._shapes(np.hypot(x, y)).T.tocsr()
-        theta = np.arctan2(y, x)
-        return np.array([onto @ (forces * np.cos(m * theta)[:, None]) for m in self.harmonics])
+    def nodal_loads(self, r: np.ndarray, theta: np.ndarray, forces: np.ndarray) -> np.ndarray:
+        """L of ``forces`` (columns, arcs, points), (harmonics, nodes, columns).
+
+        r, theta : radius of each arc (arcs,) and angles on it (arcs, points)
+        """
+        onto, at_arcs = self._shapes(r).T, forces.transpose(1, 2, 0)
+        return np.array([onto @ (wave[:, None, :] @ at_arcs)[:, 0] for wave in self._waves(theta)])
 
     def products(self, r: np.ndarray, values: np.ndarray) -> np.ndarray:
         """sum_k values_mk phi_i(r_k), (harmonics, nodes), of values (harmonics, radii)."""
         return (self._shapes(r).T @ values.T).T
 
-    def deflection(self, loads: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """u_z at points of the surface within the last node under ``loads`` (harmonics, nodes)."""
-        at, theta = self._shapes(np.hypot(x, y)), np.arctan2(y, x)
-        u = np.zeros(x.shape)
-        for m, S, L in zip(self.harmonics, self.matrices, loads, strict=True):
-            u += np.cos(m * theta) * (at @ (S @ L))
+    def deflection(self, loads: np.ndarray, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """u_z on arcs as in ``nodal_loads`` under ``loads`` (harmonics, nodes), (arcs, points)."""
+        of_arcs = self._shapes(r) @ np.einsum("mij,mj->im", self.matrices, loads)
+        u = np.zeros(theta.shape)
+        for amplitude, wave in zip(of_arcs.T, self._waves(theta), strict=True):
+            u += amplitude[:, None] * wave
         return u
 
     def displacements(self, loads: np.ndarray) -> dict[int, np.ndarray]:
         """Field vector of every harmonic under a pressure of ``loads`` (harmonics, nodes)."""
-        return {
-            int(m): np.sum([w * (self.fields[k] @ L) for k, w in self.weights(m)], axis=0)
-            for m, L in zip(self.harmonics, loads, strict=True)
-            if L.any()
-        }
+        pressed = {int(m): L for m, L in zip(self.harmonics, loads, strict=True) if L.any()}
+        return _superposed(self.solved, pressed, lambda k, columns: self.fields[k] @ columns)
 
     def sliding(self, loads: np.ndarray, friction: float) -> dict[int, np.ndarray]:
         """The same under the traction ``friction`` times the pressure along x."""
         L = np.zeros((self.last + 3, self.nodes.size))
         L[self.harmonics] = loads
-        of: dict[int, np.ndarray] = {}
+        pulled: dict[int, np.ndarray] = {}
         for m in range(self.last + 2):
             below, above = L[abs(m - 1)], L[m + 1]
             tractions = friction / 2 * np.array([0 * below, below + above, above - below])
             if tractions.any():
-                of[m] = tractions
+                pulled[m] = tractions
         known = dict(zip(self.solved, self.meridians, strict=True))
-        solved = (*(m for m in of if m < DIRECT), *(m for m in self.solved if m >= DIRECT))
-        found = {m: np.zeros((2 if m == 0 else 3) * self.discretisation.N) for m in of}
-        for k, one in enumerate(solved):
-            shares = [(m, w) for m in of for j, w in _weights(solved, m) if j == k]
-            if not shares:
-                continue
-            meridian = known.get(one) or Meridian.of(self.solid, self.discretisation, one)
-            columns = np.stack([w * of[m] for m, w in shares], axis=-1)
-            for (m, _), u in zip(shares, meridian.fields(columns).T, strict=True):
-                found[m] += u
-        return found
+        solved = (*(m for m in pulled if m < DIRECT), *(m for m in self.solved if m >= DIRECT))
+
+        def respond(k: int, columns: np.ndarray) -> np.ndarray:
+            one = known.get(solved[k]) or Meridian.of(self.solid, self.discretisation, solved[k])
+            return one.fields(columns)
+
+        return _superposed(solved, pulled, respond)
+
+    def _waves(self, theta: np.ndarray) -> Iterator[np.ndarray]:
+        """cos(m theta) of every harmonic m."""
+        wave, turn = np.ones(theta.shape, dtype=complex), np.exp(1j * self.fold * theta)
+        for _ in self.harmonics:
+            yield wave.real
+            wave *= turn
 
     def _shapes(self, r: np.ndarray) -> sp.csr_matrix:
         """phi_i(r), (points, nodes); r within the last node."""
@@ -165,6 +168,26 @@ def _weights(solved: tuple[float, ...], m: int) -> list[tuple[int, float]]:
     away = np.log(m) - x
     lagrange = [np.prod(np.delete(away, k)) / np.prod(np.delete(x[k] - x, k)) for k in range(x.size)]
     return [(first + k, float(w) * solved[first + k] / m) for k, w in enumerate(lagrange)]
+
+
+def _superposed(
+    solved: tuple[float, ...],
+    loads: dict[int, np.ndarray],
+    respond: Callable[[int, np.ndarray], np.ndarray],
+) -> dict[int, np.ndarray]:
+    """Field vector of every m under its ``loads``, (.., nodes).
+
+    respond : field vectors (n, columns) of a solution, by number, under loads (.., nodes, columns)
+    """
+    found: dict[int, np.ndarray] = {}
+    for k in range(len(solved)):
+        shares = [(m, w) for m in loads for j, w in _weights(solved, m) if j == k]
+        if not shares:
+            continue
+        columns = np.stack([w * loads[m] for m, w in shares], axis=-1)
+        for (m, _), u in zip(shares, respond(k, columns).T, strict=True):
+            found[m] = found[m] + u if m in found else u
+    return found
 
 
 @dataclass(frozen=True, eq=False)

@@ -146,7 +146,7 @@ class StarPressure:
         weights = 2 * (of_r * r)[arc, None] * of_angle
         x, y, weights = x.ravel(), y.ravel(), weights.ravel()
         s, tau = self._polar(x, y)
-        return Quadrature(np.minimum(s, 1 - 1e-14), tau, x, y, weights)
+        return Quadrature(r[arc], angle, np.minimum(s, 1 - 1e-14), tau, x, y, weights)
 
     def _inside(self, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
         """Positive inside the contact."""
@@ -207,8 +207,11 @@ class StarPressure:
 
 @dataclass(frozen=True, eq=False)
 class Quadrature:
-    """Points by s, tau, x, y; ``weights`` of integrals over the whole contact."""
+    """Points on arcs of radius r (arcs,) at angles theta (arcs, points); s, tau, x, y and ``weights`` of them
+    all, of integrals over the whole contact."""
 
+    r: np.ndarray
+    theta: np.ndarray
     s: np.ndarray
     tau: np.ndarray
     x: np.ndarray
@@ -254,7 +257,8 @@ def corrected(
         tests = root**3 * pressure.polynomials(at.s, at.tau, DEGREE + 2)
         forces = np.concatenate([[p], smooth, moved, tests]) * at.weights
         k = 1 + len(smooth) + len(moved)
-        L = compliance.nodal_loads(at.x, at.y, forces.T) * used[:, None, None]
+        L = compliance.nodal_loads(at.r, at.theta, forces.reshape(-1, *at.theta.shape))
+        L = L * used[:, None, None]
         known = height(at.x, at.y)
         total = forces.sum(axis=1)
         work = np.einsum("mit,mic->tc", L[:, :, k:], compliance.matrices @ L[:, :, :k])
@@ -275,7 +279,7 @@ def corrected(
             edge=pressure.edge + share * x[n:-1],
         )
     loads = L[:, :, 0]
-    gap = compliance.deflection(loads, at.x, at.y) + known - x[-1]
+    gap = compliance.deflection(loads, at.r, at.theta).ravel() + known - x[-1]
     forces = at.weights * p
     residual = float(np.sqrt((forces * gap**2).sum() / forces.sum()) / x[-1])
     return Corrected(pressure, loads, float(x[-1]), residual, step, size < CLOSE)

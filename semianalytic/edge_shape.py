@@ -18,6 +18,7 @@ phi = df/db, df/dc at the patch centres and e the patches' pressure less f,
 K the influence coefficients. Fitted point by point, f would extrapolate over the last patch.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -83,9 +84,12 @@ class Shape:
     def reach(self, angle: Array) -> Array:
         """s of the edge in the direction ``angle`` of u + iv: t along a ray is nearly 1 - (s/reach)^2."""
         reach: Array = np.ones(np.shape(angle))
+        cos, sin = np.cos(angle), np.sin(angle)
         for _ in range(20 if self.contour.any() else 0):
-            t = self._in_frame(reach * np.cos(angle), reach * np.sin(angle))[0]
+            t = self._in_contour(reach * cos, reach * sin)
             reach = reach / np.sqrt(np.maximum(1 - t, 0.25))
+            if np.all(np.abs(t) < 1e-15):
+                break
         return reach
 
     def _in_frame(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
@@ -94,9 +98,10 @@ class Shape:
         if self.harmonics == ROUND:
             return t, s2, np.ones((1, *s2.shape))
         H = np.empty((len(self.harmonics), *s2.shape))
-        power = {0: np.ones(s2.shape, dtype=complex)}
-        for n in range(1, max(map(abs, self.harmonics)) + 1):
-            power[n] = power[n - 1] * (u + 1j * v)
+        fold, last = math.gcd(*self.harmonics), max(map(abs, self.harmonics))
+        power, turn = {0: np.ones(s2.shape, dtype=complex)}, (u + 1j * v) ** fold
+        for n in range(fold, last + 1, fold):
+            power[n] = power[n - fold] * turn
         for k, n in enumerate(self.harmonics):
             H[k] = power[n].real if n >= 0 else power[-n].imag
         high = np.abs(self.harmonics) > 2
@@ -106,8 +111,11 @@ class Shape:
         return t, s2, H
 
     def inside(self, x: Array, y: Array) -> Array:
-        """t at x, y [m], without the harmonic polynomials one by one."""
-        u, v = self._framed(x, y)
+        """t at x, y [m]."""
+        return self._in_contour(*self._framed(x, y))
+
+    def _in_contour(self, u: Array, v: Array) -> Array:
+        """t, without the harmonic polynomials one by one."""
         t: Array = 1 - u * u - v * v
         if not self.contour.any():
             return t

@@ -233,14 +233,16 @@ class _Tables:
         if not body.coatings:
             return None
         reach = 2 * body.thickness[0] - z if layer == 0 else z
-        octave = np.floor(np.log2(reach) + 1e-9)
+        # counted from the least, so that a few depths beside each other share a scale and its error
+        least = reach.min()
+        octave = np.floor(np.log2(reach / least) + 1e-9)
         groups, between = [], []
         for power in dict.fromkeys(octave):
             depths = np.unique(z[octave == power])
             between.append(depths.size > DEPTHS)
             if between[-1]:
                 depths = chebyshev(depths[0], depths[-1], layer > 0)
-            tables = response.below(depths, layer, 2.0**power, excess=layer == 0)
+            tables = response.below(depths, layer, least * 2.0**power, excess=layer == 0)
             groups.append((float(z[octave == power][0]), depths, tables))
         return cls(groups, between, layer > 0)
 
