@@ -234,7 +234,7 @@ class _Tables:
             return None
         reach = 2 * body.thickness[0] - z if layer == 0 else z
         # counted from the least, so that a few depths beside each other share a scale and its error
-        least = reach.min()
+        least = reach.min(initial=np.inf)
         octave = np.floor(np.log2(reach / least) + 1e-9)
         groups, between = [], []
         for power in dict.fromkeys(octave):
