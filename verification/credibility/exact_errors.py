@@ -4,9 +4,8 @@ A uniform pressure and Hertz's, which slides, on the surface, inside, on both si
 is iterated, so the error is that of the stress coefficients, of the influence coefficients and of the
 convolution, each apart.
 
-Two ellipses: the axes of the first are turned, so that the contact has no mirror plane in common with the
-grid; it is Hertz's. The second slides on a stiff coating; finite elements have its pressure, harmonic by
-harmonic, and give the stresses and the approach at which the gap under the indenter vanishes in the mean.
+The axes of an ellipse are turned, so that the contact has no mirror plane in common with the grid; it is
+Hertz's.
 """
 
 from dataclasses import dataclass, replace
@@ -33,13 +32,10 @@ INSIDE = np.array([-0.8, -0.55, -0.3, 0.0, 0.21, 0.47, 0.7])  # of the radius, o
 QUARTER = ((0.0, 0.3, 0.75, 0.2, 0.5, 0.6, 0.9, 1.0), (0.0, 0.0, 0.0, 0.7, 0.5, 0.3, 0.9, 1.0))
 SIDE = 0.07  # of a patch, over a_h
 FILMS = {"film of one patch": 1.0, "film of five patches": 5.0}  # thickness over that
-TURNED, SLIDING = "ellipse 2 : 1, turned", "ellipse 2 : 1, sliding"
+TURNED = "ellipse 2 : 1, turned"
 ANGLE = 0.4  # of the long axis from x
 BETWEEN = 0.4  # of a patch, by which the turned ellipse lies beside a patch centre
 WIDE = 1.15  # half-width of the grid over the long semi-axis
-HARMONICS, SIZE = 14, 0.2  # of the finite elements
-BELOW = (0.5, 0.5, 0.9, 1.6)  # depths over a_h: in the coating, below it
-ALONG = np.linspace(-1.5, 1.5, 13)  # of the long semi-axis, beside the plane of symmetry
 
 
 @dataclass(frozen=True)
@@ -200,59 +196,6 @@ def turned_ellipse(problem: CoatedContact, patches: int = 129) -> list[ExactErro
         }
         what = TURNED if approach is None else f"{TURNED}, given approach"
         found += [ExactError(what, "uncoated", name, abs(error)) for name, error in errors.items()]
-    return found
-
-
-def between_methods(problem: CoatedContact, patches: int = 129) -> list[ExactError]:
-    """Differences of both methods under a sliding ellipsoid, along its long axis and across.
-
-    problem : the solid, load and friction; the product of both radii is that of the sphere's, squared.
-    """
-    import fem_reference
-    import semianalytic
-
-    found = []
-    for name, ratio in (("along the long axis", 1.5), ("across the long axis", 1 / 1.5)):
-        R_x, R_y = problem.radius * ratio, problem.radius / ratio
-
-        def height(x: Any, y: Any, R_x: float = R_x, R_y: float = R_y) -> Any:
-            return x**2 / (2 * R_x) + y**2 / (2 * R_y)
-
-        patch = semianalytic.indent(
-            profile=height,
-            half_width=1.5 * problem.a_h,
-            load=problem.load,
-            patches=patches,
-            estimate_uncertainty=False,
-            coatings=problem.coatings,
-            substrate=problem.substrate,
-            friction=problem.friction,
-        )
-        x = np.linspace(0, 1.5 * problem.a_h, 600)
-        reach = max(
-            float(along[patch.pressure(*at) > 0].max()) for along, at in ((x, (x, 0 * x)), (x, (0 * x, x)))
-        )
-        elements = fem_reference.check_pressure(
-            pressure=patch.pressure,
-            reach=1.01 * reach,
-            harmonics=HARMONICS,
-            size=SIZE,
-            estimate_uncertainty=False,
-            coatings=problem.coatings,
-            substrate=problem.substrate,
-            friction=problem.friction,
-        )
-        X, Y = ALONG * reach, np.full(ALONG.shape, 0.2 * problem.a_h)
-        layers = (0, *(1,) * (len(BELOW) - 1))
-        difference = [
-            patch.stress(X, Y, z * problem.a_h, layer=k) - elements.stress(X, Y, z * problem.a_h, layer=k)
-            for z, k in zip(BELOW, layers, strict=True)
-        ]
-        errors = {
-            "stress by finite elements": float(np.max(np.abs(difference))) / patch.peak_pressure,
-            "approach by finite elements": abs(elements.approach_of(height) / patch.approach - 1),
-        }
-        found += [ExactError(f"{SLIDING}, {name}", "coated", what, error) for what, error in errors.items()]
     return found
 
 

@@ -11,7 +11,7 @@ of a patch, d/a = 0.009 at 257 patches:
     discs        the quadratures of rings and tables promise 1e-8; patches carry a step of the pressure to
                  second order, and a pressure that falls to zero to third; between patch centres a pressure
                  is interpolated to third order, (d/a)^3 = 4e-6 on 129 patches
-    ellipses     as corrected, on 129 patches; finite elements leave out harmonics beyond the 14th
+    ellipses     as corrected, on 129 patches
 """
 
 from collections.abc import Iterable
@@ -80,8 +80,6 @@ OTHERS = {
     "contact radius": 2e-5,
     "approach": 5e-6,
     "load": 5e-6,
-    "stress by finite elements": 1e-4,
-    "approach by finite elements": 1e-4,
 }
 
 

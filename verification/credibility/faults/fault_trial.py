@@ -104,8 +104,7 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
             checks += found
             changes.append(moved)
         if _staged(fault) and not _noticed(checks):
-            elements = any(name.endswith("by finite elements") for name in fault.predicted)
-            checks += [of_study(row) for row in accuracy_study.quick(elements)]
+            checks += [of_study(row) for row in accuracy_study.quick()]
         tests = () if fault.where in METHODS and _settled(checks, fault) else self_tests()
     checks += [of_self_test(test) for test in tests]
     failed = [test.name for test in tests if not test.passed]
