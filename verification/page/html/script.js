@@ -82,6 +82,13 @@ addEventListener("DOMContentLoaded", () => {
     if (menu && !wide.matches && event.target.closest?.(".menu a")) menu.open = false;
   });
 
+  // On a narrow screen the comparisons are folded: the first page stays short.
+  const chart = document.querySelector("details.chart");
+  const narrow = matchMedia("(max-width: 46rem)");
+  const fold = () => { if (chart) chart.open = !narrow.matches; };
+  narrow.addEventListener("change", fold);
+  fold();
+
   // Dark or light as the system has it, until the button says otherwise.
   const theme = document.querySelector("button.theme");
   if (theme) {

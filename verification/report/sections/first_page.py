@@ -263,18 +263,17 @@ def worth(material: Material) -> list[Worth]:
             share("negative controls left alone", silent, "#faults")
     if alarms := evidence.alarms:
         value = f"{len(alarms.alarms)} of {alarms.comparisons + alarms.invariants}"
-        name = "false alarms, random problems"
-        recorded(name, value, "#credibility", "alarms", alarms.started, alarms.commit)
+        recorded("false alarms", value, "#credibility", "alarms", alarms.started, alarms.commit)
     if evidence.maps is not None and evidence.maps.maps:
         count = str(len(evidence.maps.maps))
-        recorded("assumptions with a map", count, "#model", "maps", *made_with(evidence.maps))
+        recorded("assumptions mapped", count, "#model", "maps", *made_with(evidence.maps))
     regression = evidence.baseline
     if regression is not None and regression.update is not None:
         same = sum(case.count(State.SAME) for case in regression.cases)
         total = sum(case.count(state) for case in regression.cases for state in State)
         good = False if regression.unexplained else True if same == total else None
         value = f"all {total}" if same == total else f"{same} of {total}"
-        found.append(Worth("numbers as in the baseline", value, "#baseline", good))
+        found.append(Worth("numbers of the baseline", value, "#baseline", good))
     share("self-tests passed", [test.passed for test in evidence.self_tests], "#self-tests")
     return found
 
