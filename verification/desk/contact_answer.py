@@ -160,4 +160,4 @@ def _place(at: Extreme, a: float, *, sliding: bool) -> str:
     if abs(at.x) < ON_AXIS * a:
         return f"{depth} on the axis"
     side = ("behind" if at.x < 0 else "ahead of") if sliding else "from"
-    return f"{depth}, {abs(at.x) / a:.2f} a {side} the axis"
+    return f"{depth}, {abs(at.x) * 1e6:.3g} um {side} the axis"

@@ -109,20 +109,24 @@ def _counted(count: int, noun: str) -> str:
 
 
 def largest(material: Material) -> list[str]:
-    """The largest difference among the comparisons; the largest in the planes, which are not judged."""
+    """The largest difference, that next to edges that are not round, and that in planes, unjudged."""
     found = [
         (Item(claim, verdict), result)
         for result in material.results
         for claim, verdict in result.verdicts
         if Item(claim, verdict).difference is not None
     ]
+    found.sort(key=lambda pair: pair[0].difference or 0.0)
     texts = []
-    if found:
-        item, result = max(found, key=lambda pair: pair[0].difference or 0.0)
+    if away := [pair for pair in found if pair[0].claim.line != EDGE_LINE]:
+        item, result = away[-1]
         texts.append(
             f"The largest difference is {scientific(item.difference)} {_scale(item.claim)}: "
             f"{_place(item.claim)}, {result.title}."
         )
+    if edge := [item for item, _ in found if item.claim.line == EDGE_LINE]:
+        cap = edge[-1].claim.cap
+        texts.append(f"Next to edges that are not round: {scientific(edge[-1].difference)}, cap {cap:g}.")
     gaps = [
         gap[0]
         for result in material.contacts
@@ -145,12 +149,6 @@ def left_out(material: Material) -> tuple[float, int]:
         for claim, _ in result.verdicts
     ]
     return 100 * max(zones, default=0.0), sum(zone > 0 for zone in zones)
-
-
-def near_edge(material: Material) -> tuple[float, int]:
-    """The cap next to the edge of a contact that is no disc, and the number of comparisons with it."""
-    caps = [c.cap for result in material.results for c, _ in result.verdicts if c.line == EDGE_LINE]
-    return max(caps, default=0.0), len(caps)
 
 
 def _scale(claim: Claim) -> str:
@@ -320,5 +318,5 @@ FIRST_PAGE: Mapping[str, Callable[[Material], Any]] = {
     "chart": chart,
     "worth": worth,
     "left_out": left_out,
-    "near_edge": near_edge,
+    "shaped": lambda material: any(result.problem.get("indenter") for result in material.contacts),
 }
