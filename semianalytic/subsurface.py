@@ -49,8 +49,8 @@ __all__ = [
 Array = NDArray[Any]
 
 PAIRS = 200_000  # points times rings held at a time
-# Chebyshev depths within an octave of the reach, 3e-10 of the field; fewer depths are taken as they are
-DEPTHS = 10
+# Chebyshev depths within an octave of the reach: 10 leave 1e-6 of p0; fewer depths are taken as they are
+DEPTHS = 14
 
 
 @dataclass(frozen=True, eq=False)
@@ -220,31 +220,39 @@ class PointField:
 
 @dataclass(frozen=True, eq=False)
 class _Tables:
-    """Radial functions of the layers at any depth between those of ``groups``: (least depth, nodes,
-    tables)."""
+    """Radial functions of the layers at any depth between those of ``groups``: (least depth, nodes, tables).
+
+    image : depth [m] from which the fields vary in proportion to the distance
+    """
 
     groups: list[tuple[float, Array, list[PointForce]]]
     between: list[bool]
-    logarithm: bool
+    image: float
 
     @classmethod
     def of(cls, z: Array, layer: int, body: Body, response: Response) -> "_Tables | None":
-        """For the depths z [m], ascending, of one layer; None of an uncoated body."""
+        """For the depths z [m], ascending, of one layer; None of an uncoated body.
+
+        Fields vary with the distance from the force, in the first coating from its image: ``reach``.
+        """
         if not body.coatings:
             return None
-        reach = 2 * body.thickness[0] - z if layer == 0 else z
+        image = 2 * body.thickness[0] if layer == 0 else 0.0
+        reach = np.abs(image - z)
         # counted from the least, so that a few depths beside each other share a scale and its error
         least = reach.min(initial=np.inf)
         octave = np.floor(np.log2(reach / least) + 1e-9)
         groups, between = [], []
         for power in dict.fromkeys(octave):
-            depths = np.unique(z[octave == power])
+            here = octave == power
+            depths = np.unique(z[here])
             between.append(depths.size > DEPTHS)
             if between[-1]:
-                depths = chebyshev(depths[0], depths[-1], layer > 0)
+                nodes = chebyshev(reach[here].min(), reach[here].max(), True)
+                depths = np.abs(image - nodes)
             tables = response.below(depths, layer, least * 2.0**power, excess=layer == 0)
-            groups.append((float(z[octave == power][0]), depths, tables))
-        return cls(groups, between, layer > 0)
+            groups.append((float(z[here][0]), depths, tables))
+        return cls(groups, between, image)
 
     def __call__(self, rho: Array, z: Array) -> Array:
         """(columns, n) at rho, z [m]."""
@@ -259,8 +267,8 @@ class _Tables:
                 out = np.zeros((tables[0].radial.c.shape[-1], rho.size))
             s = np.arcsinh(rho[here] / tables[0].scale)
             if self.between[k]:
-                at = (np.log(depths), np.log(z[here])) if self.logarithm else (depths, z[here])
-                for w, table in zip(weights(*at), tables, strict=True):
+                nodes, reach = (np.log(np.abs(self.image - one)) for one in (depths, z[here]))
+                for w, table in zip(weights(nodes, reach), tables, strict=True):
                     out[:, here] += w * table.radial(s).T
             else:
                 nearest = np.clip(np.searchsorted(depths, z[here] * (1 - 1e-12)), 0, len(tables) - 1)
