@@ -15,6 +15,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.progress import Progress
 from rich.table import Column, Table
+from threadpoolctl import threadpool_limits
 
 from verification.cases.case_file import Case, default_cases, parse_case, read_case
 from verification.cases.plausibility import beyond_limits, refused
@@ -114,7 +115,8 @@ def solve(
         _print(case, first, apart, halved)
     with bars() as bar:
         task = bar.add_task("error of the model", total=1)
-        beyond = model_error(case.problem)
+        with threadpool_limits(1):
+            beyond = model_error(case.problem)
         bar.update(task, advance=1)
     costs = beyond.warnings(told=case.warnings)
     print_warnings(costs, case.name, strict=strict, silent=as_json)
@@ -208,7 +210,8 @@ def _from_options(
 
 def _answer(case: Case, source: str) -> Answer:
     try:
-        return answer(case.problem, source, case.numerics.get(source), case.residual, case.layers)
+        with threadpool_limits(1):  # the matrices are small: more threads wait for each other
+            return answer(case.problem, source, case.numerics.get(source), case.residual, case.layers)
     except Exception as error:  # as of any solve
         raise no_result(f"{case.name}: {source}: {message_of(error)}") from None
 
