@@ -125,8 +125,8 @@ def largest(material: Material) -> list[str]:
             f"{_place(item.claim)}, {result.title}."
         )
     if edge := [item for item, _ in found if item.claim.line == EDGE_LINE]:
-        cap = edge[-1].claim.cap
-        texts.append(f"Next to edges that are not round: {scientific(edge[-1].difference)}, cap {cap:g}.")
+        worst = f"{scientific(edge[-1].difference)}, cap {edge[-1].claim.cap:g}"
+        texts.append(f"Beside edges not round, in {len(edge)} comparisons: {worst}.")
     gaps = [
         gap[0]
         for result in material.contacts
