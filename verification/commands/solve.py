@@ -52,6 +52,7 @@ DIGITS = 5  # of a value, unless its uncertainty ends before
 
 
 @with_exit_code
+@threadpool_limits.wrap(limits=1)  # the matrices are small: more threads wait for each other
 def solve(
     file: str | None = None,
     /,
@@ -115,8 +116,7 @@ def solve(
         _print(case, first, apart, halved)
     with bars() as bar:
         task = bar.add_task("error of the model", total=1)
-        with threadpool_limits(1):
-            beyond = model_error(case.problem)
+        beyond = model_error(case.problem)
         bar.update(task, advance=1)
     costs = beyond.warnings(told=case.warnings)
     print_warnings(costs, case.name, strict=strict, silent=as_json)
@@ -210,8 +210,7 @@ def _from_options(
 
 def _answer(case: Case, source: str) -> Answer:
     try:
-        with threadpool_limits(1):  # the matrices are small: more threads wait for each other
-            return answer(case.problem, source, case.numerics.get(source), case.residual, case.layers)
+        return answer(case.problem, source, case.numerics.get(source), case.residual, case.layers)
     except Exception as error:  # as of any solve
         raise no_result(f"{case.name}: {source}: {message_of(error)}") from None
 
