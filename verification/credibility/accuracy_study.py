@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 from verification.credibility.exact_errors import (
     ExactError,
+    convolution_errors,
     disc_errors,
     film_errors,
     turned_ellipse,
@@ -111,9 +112,9 @@ def measure() -> AccuracyStudy:
 
 
 def discs_of(patches: int = 129) -> tuple[ExactError, ...]:
-    """Given pressures on both solids, Hertz's sliding on the coated one; one patch of thin films."""
-    found = disc_errors(COATED, "coated", FRICTION, patches)
-    return (*found, *disc_errors(BARE, "uncoated", 0.0, patches), *film_errors(COATED))
+    """Given pressures on both solids, Hertz's sliding on the coated one; DC-FFT; one patch of thin films."""
+    found = disc_errors(COATED, "coated", FRICTION, patches) + disc_errors(BARE, "uncoated", 0.0, patches)
+    return (*found, *convolution_errors(COATED, "coated"), *film_errors(COATED))
 
 
 def quick() -> tuple[Invariant, ...]:

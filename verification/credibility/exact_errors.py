@@ -1,4 +1,4 @@
-"""Errors of the semi-analytical method: discs under given pressures, films, elliptical contacts.
+"""Errors of the semi-analytical method: discs under given pressures, DC-FFT, films, elliptical contacts.
 
 A uniform pressure and Hertz's, which slides, on the surface, inside, on both sides of each interface. Nothing
 is iterated, so the error is that of the stress coefficients, of the influence coefficients and of the
@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from scipy.signal import convolve
 
 from verification.judging.invariants.influence_error import coefficient_error
 from verification.problem.array_types import Array
@@ -147,6 +148,30 @@ def _deflection_error(problem: CoatedContact, exact: HankelField, patches: int) 
     i, j = (np.array(QUARTER) * (len(grid.x) - 1)).astype(int)
     normal = HankelField(exact.pressure, problem.coatings, problem.substrate, 0.0)
     return float(np.abs(u[i, j] - normal.displacement(grid.x[i], grid.x[j], 0 * grid.x[i])[2]).max())
+
+
+def convolution_errors(problem: CoatedContact, solid: str, patches: int = 31) -> list[ExactError]:
+    """Errors of DC-FFT against the sum over patches, on a grid loaded up to its rim, and on a quarter of it.
+
+    No contact loads the patches at the rim, from which a padding that is too short wraps around.
+    """
+    from semianalytic import convolution, influence
+    from semianalytic.inputs import Body, Numerics
+
+    body = Body(problem.coatings, problem.substrate, 0.0, None)
+    K = influence.surface_coefficients(patches, problem.a_h / patches, body, Numerics())
+    middle = patches // 2
+    x = np.arange(patches) - middle
+    even = 1.0 + np.add.outer(x**2, 2 * x**2) / patches
+    found = []
+    for p, quarter in ((even + np.add.outer(x, -3 * x), False), (even, True)):
+        exact = convolve(p, np.pad(K, ((patches - 1, 0),) * 2, "reflect"), "valid", "direct")
+        held = (slice(middle * quarter, None),) * 2
+        u = convolution.even_convolution(K, quarter=quarter)(p[held].copy())
+        name = "convolution on a quarter" if quarter else "convolution"
+        error = _largest([u - exact[held]]) / float(np.abs(exact).max())
+        found.append(ExactError("pressure up to the rim", solid, name, error))
+    return found
 
 
 def film_errors(problem: CoatedContact) -> list[ExactError]:

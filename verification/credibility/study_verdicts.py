@@ -11,6 +11,7 @@ of a patch, d/a = 0.009 at 257 patches:
     discs        the quadratures of rings and tables promise 1e-8; patches carry a step of the pressure to
                  second order, and a pressure that falls to zero to third; between patch centres a pressure
                  is interpolated to third order, (d/a)^3 = 4e-6 on 129 patches
+    convolution  DC-FFT is the sum over patches but for rounding
     ellipses     as corrected, on 129 patches
 """
 
@@ -63,7 +64,7 @@ LIMITS = {
         {"p0": 2e-3, "a": 5e-3, "approach": 1e-2, "pressure": 5e-3, "stress": 5e-3}, {"pressure": 0.8}, FIXED
     ),
 }
-RINGS, PATCHES = 1e-8, 1e-6
+RINGS, PATCHES, ROUNDING = 1e-8, 1e-6, 1e-13
 DISCS = {
     "stress, surface": RINGS,
     "stress, inside": RINGS,
@@ -76,6 +77,8 @@ DISCS = {
 }
 OTHERS = {
     "influence coefficients": BOUND,
+    "convolution": ROUNDING,
+    "convolution on a quarter": ROUNDING,
     "peak pressure": 1e-5,
     "contact radius": 2e-5,
     "approach": 5e-6,

@@ -62,8 +62,16 @@ def test_every_part_meets_its_limit(clean):
             Edit("semianalytic.nodal_convolution:samples", "/ 24", "/ 12"),
             "stress on a plane",
         ),
+        (
+            Edit(
+                "semianalytic.convolution:even_convolution",
+                "_even_spectrum(kernel, good_size(2 * nx - 1), good_size(2 * ny - 1), threads)",
+                "_even_spectrum(kernel[: nx - 1, : ny - 1], 2 * nx - 4, 2 * ny - 4, threads)",
+            ),
+            "convolution",
+        ),
     ],
-    ids=["coefficients", "rings", "patches"],
+    ids=["coefficients", "rings", "patches", "padding"],
 )
 def test_a_spoiled_part_does_not(edit, part):
     with planted((edit,)):
