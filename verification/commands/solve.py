@@ -254,7 +254,7 @@ def _print(case: Case, first: Answer, apart: Sequence[Difference], halved: Seque
         places = ["-", "-"] if math.isnan(at.x) else [f"{at.x * 1e6:.2f}", f"{at.z * 1e6:.2f}"]
         shown = [_value(at.value / 1e6, at.uncertainty / 1e6), _spread(at.uncertainty, 1e6)]
         table.add_row(at.quantity, where, *shown, *places, *checked(key, 1e6))
-    said = (summary(case.problem, first), agreement(first, tuple(apart)))
+    said = (summary(case.problem, first, case.names), agreement(first, tuple(apart)))
     print_out(
         f"[bold]{escape(case.title)}[/]",
         escape(stack(case)),

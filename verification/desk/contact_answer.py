@@ -95,11 +95,11 @@ def governing(found: Answer) -> Extreme | None:
     return _largest(found, "sigma_1")
 
 
-def summary(problem: CoatedContact, found: Answer) -> str:
+def summary(problem: CoatedContact, found: Answer, names: Mapping[str, tuple[str, ...]] | None = None) -> str:
     """Where both bodies are pulled and yield the most, and the interfaces are sheared; three digits in MPa.
 
     Where the largest tension is not that of a coating, the largest of the coatings follows; then the largest
-    sigma_xx at the base of a coating, which cracks from there too.
+    sigma_xx at the base of a coating, which cracks from there too.  names : of the coatings, see ``Case``.
     """
 
     a, sliding = found.numbers["contact_radius"][0], problem.friction > 0
@@ -108,6 +108,9 @@ def summary(problem: CoatedContact, found: Answer) -> str:
 
     def name(at: Extreme) -> str:
         where = "the substrate" if at.where == "substrate" else at.where
+        for number, given in enumerate((names or {}).get(at.body, ())[:-1], start=1):
+            if given and where.endswith(f"coating {number}"):
+                where += f" ({given})"
         if at.body == FLAT:
             return where
         coated = bool(problem.seen_from(at.body).coatings)

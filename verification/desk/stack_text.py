@@ -44,7 +44,7 @@ def described(case: Case) -> list[str]:
     size = f"R = {problem.radius * 1e3:.4g} mm (diameter {2e3 * problem.radius:.4g} mm), {kind}"
     lines = [f"ball        {size}; W = {problem.load:.4g} N, f = {problem.friction:g}"]
     for body in problem.bodies:
-        seen, begin = problem.seen_from(body), 0
+        seen, names, begin = problem.seen_from(body), case.names.get(body, ()), 0
         for i, layers in enumerate(_coatings(seen, case.layers.get(body)), start=1):
             on, n = "coating" if body == FLAT else f"on the {BALL}", len(layers)
             stress = sorted(case.residual[body][begin : begin + n]) if case.residual else [0.0]
@@ -52,6 +52,8 @@ def described(case: Case) -> list[str]:
             course = f", E to {_gpa(last)} in {n} sub-layers" if n > 1 else ""
             more = f", residual stress {_range(stress[0] / 1e6, stress[-1] / 1e6)} MPa" if any(stress) else ""
             thickness = f"{sum(h for *_, h in layers) * 1e6:.4g} um"
+            if names and names[i - 1]:
+                thickness = f"{names[i - 1]} {thickness}"
             lines.append(f"{on} {i}   "[:12] + f"{thickness}, {_solid(E, nu)}{course}{more}")
             begin += n
         if body == FLAT:

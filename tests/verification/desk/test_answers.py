@@ -151,6 +151,9 @@ def test_summary_names_the_layer_the_place_and_the_side_of_the_largest_tension(s
     base = at(solved[LAYERED], "sigma_xx", "base of coating 1").value
     shear = at(solved[LAYERED], "|sigma_xz|", "interface 2").value
     assert all(f"{value / 1e6:.0f} MPa" in layered for value in (base, shear))
+    named = summary(LAYERED, solved[LAYERED], {"flat": ("DLC", "", "steel")})
+    assert "coating 1 (DLC)" in named
+    assert "coating 2 (" not in named
     squeezed = replace(solved[BARE], extremes=tuple(replace(e, value=0.0) for e in solved[BARE].extremes))
     assert "170 MPa" not in summary(BARE, squeezed)
 
