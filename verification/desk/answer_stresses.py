@@ -222,13 +222,13 @@ class _Layers:
         near = found[k - 1 : k + 2]
         z = np.array([at.z for at in near])
         depth = vertex(z, np.array([at.value for at in near]))
-        places = [(found[k].x, found[k].z), (float(np.interp(depth, z, [at.x for at in near])), depth)]
-        layer, f = planes[1].layer, self.problem.friction
-        stress = [stress_at(self.parts, x, z, layer, f) for x, z in places]
-        values = [float(measure(one)) for one, _ in stress]
+        x = np.array([found[k].x, np.interp(depth, z, [at.x for at in near])])
+        z = np.array([found[k].z, depth])
+        stress, bound = stress_at(self.parts, x, z, planes[1].layer, self.problem.friction)
+        values = [float(measure(one)) for one in stress.T]
         best = int(np.argmax(values))
-        spread = propagated(measure, *stress[best]) + abs(values[1] - values[0])
-        return [Located(values[best], spread, *places[best])]
+        spread = propagated(measure, stress[:, best], bound[:, best]) + abs(values[1] - values[0])
+        return [Located(values[best], spread, float(x[best]), float(z[best]))]
 
     def _surface(self) -> Located:
         """The largest tension of the surface, with the cusp at the contact edge as a candidate."""

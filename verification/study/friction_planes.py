@@ -113,12 +113,11 @@ def _signed(curves: tuple[Curve, Curve], x: Array, friction: float) -> Array:
     return sign * (normal + friction * np.where(left, -1.0, 1.0) * tangential)
 
 
-def stress_at(parts: Parts, x: float, z: float, layer: int, friction: float) -> tuple[Array, Array]:
-    """xx, yy, zz, xz [Pa] at one point (x, 0, z), (4,), with their uncertainty: the solution's own."""
-    r = np.array([abs(x)])
-    normal, tangential, bound = parts(r, z, layer)
-    stress = _signed((lambda _: normal, lambda _: tangential), np.array([x]), friction)[:, 0]
-    return stress, parts.uncertainty(bound if x >= 0 else bound[::-1], friction)[:, 0]
+def stress_at(parts: Parts, x: Array, z: Array, layer: int, friction: float) -> tuple[Array, Array]:
+    """xx, yy, zz, xz [Pa] at points (x, 0, z), (4, n), with their uncertainty: the solution's own."""
+    normal, tangential, bound = parts(np.abs(x), z, layer)
+    stress = _signed((lambda _: normal, lambda _: tangential), x, friction)
+    return stress, parts.uncertainty(np.where(x < 0, bound[::-1], bound), friction)
 
 
 def crowded(a: float, width: float, reach: float) -> Array:

@@ -174,7 +174,8 @@ def inside(
         return []
     at_z = vertex(z[i - 1 : i + 2], value[i - 1 : i + 2, j])
     at_x = vertex(x[j - 1 : j + 2], value[i, j - 1 : j + 2])
-    stress_there, bound = stress_at(parts, at_x, at_z, planes[1].layer, friction)
+    there = np.array([at_x]), np.array([at_z])
+    stress_there, bound = (found[:, 0] for found in stress_at(parts, *there, planes[1].layer, friction))
     best = float(measure(stress_there))
     interpolation = abs(best - float(value[i, j]))  # which may have located another point than the maximum
     return [Located(best, propagated(measure, stress_there, bound) + interpolation, at_x, at_z)]
