@@ -31,9 +31,8 @@ def _layers(case: Case, body: str) -> list[str]:
     """Each coating of ``body`` with its thickness, from its surface inwards."""
     names, found = case.names.get(body, ()), []
     for i, layers in enumerate(_coatings(case.problem.seen_from(body), case.layers.get(body))):
-        thickness = f"{sum(h for *_, h in layers) * 1e6:.4g} um"
         name = names[i] if i < len(names) else ""
-        found.append(f"{name} {thickness}" if name else f"{thickness} of {_gpa(layers[0][0])}")
+        found.append(_thickness(layers, name) + ("" if name else f" of {_gpa(layers[0][0])}"))
     return found
 
 
@@ -51,9 +50,7 @@ def described(case: Case) -> list[str]:
             (E, nu, _), last = layers[0], layers[-1][0]
             course = f", E to {_gpa(last)} in {n} sub-layers" if n > 1 else ""
             more = f", residual stress {_range(stress[0] / 1e6, stress[-1] / 1e6)} MPa" if any(stress) else ""
-            thickness = f"{sum(h for *_, h in layers) * 1e6:.4g} um"
-            if names and names[i - 1]:
-                thickness = f"{names[i - 1]} {thickness}"
+            thickness = _thickness(layers, names[i - 1] if names else "")
             lines.append(f"{on} {i}   "[:12] + f"{thickness}, {_solid(E, nu)}{course}{more}")
             begin += n
         if body == FLAT:
@@ -110,6 +107,11 @@ def _coatings(
     for n in layers or (1,) * len(seen.coatings):
         ends.append(ends[-1] + n)
     return [seen.coatings[begin:end] for begin, end in pairwise(ends)]
+
+
+def _thickness(layers: tuple[tuple[float, float, float], ...], name: str) -> str:
+    """The thickness of a coating after its name: "DLC 2 um"."""
+    return f"{name} {sum(h for *_, h in layers) * 1e6:.4g} um".strip()
 
 
 def _solid(E: float, nu: float) -> str:
