@@ -24,12 +24,13 @@ __all__ = [
 
 WIDER = 1.25  # the box that tests the domain over the box in use
 SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge
+RADIUS = 1.5  # times the change before of the contact radius, which the patches at the edge move to and fro
 OUTSIDE = 3.0  # times as much where the shape is fitted near the edge alone
 SECOND = 1e-3  # of approach and peak, times (d/a)^2: what patches leave of deflection and pressure inside
 UNRESOLVED = 0.03  # patches by which the edge of a film thinner than two of them may be wrong
 # over the accuracy asked, of the change of the pressure at the same x/a; the part that is left of the change
 # before: it was seen to fall 2.4 to 10 times from one grid to the next
-PRESSURE, EARLIER = 4.0, 1 / 5
+PRESSURE, EARLIER = 3.0, 1 / 5
 FALL = 3.0  # of the uncertainty on refining twice, that makes a larger grid worth its time
 PATCHES = 1 / 2  # of the change before, of patches alone, whose edge changes erratically
 
@@ -117,6 +118,8 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
     edge = last.staircase
     if last.shape and _unresolved(body, last.grid.d):
         edge = max(edge, UNRESOLVED * last.grid.d)
+    if last.shape:
+        edge = max(edge, RADIUS * abs(middle["contact_radius"] - coarse["contact_radius"]))
     smooth = np.multiply(SMOOTH, OUTSIDE if last.shape and last.shape.outside else 1.0)
     factor, share = smooth if last.shape else (safety(last.grid.n / levels[-2].grid.n), PATCHES)
     inside = SECOND * (last.grid.d / min(last.shape.axes)) ** 2 if last.shape else 0.0

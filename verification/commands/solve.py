@@ -124,7 +124,8 @@ def solve(
         from verification.desk.answer_figure import write
         from verification.desk.section_field import section
 
-        write(first, f"{stack(case)}\n{conditions(case.problem)}", plot, section(case.problem, case.residual))
+        title = f"{stack(case)}\n{conditions(case.problem)}"
+        write(first, title, plot, section(case.problem, case.residual), case.names)
     if as_json:
         content = {  # in SI; NaN of a place that does not exist as text
             "title": case.title,

@@ -1,7 +1,7 @@
 """Figure of one answer: stresses along x in MPa over um, on the surface, at each interface."""
 
 import io
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from verification.desk.answer_stresses import Course
-from verification.desk.contact_answer import Answer
+from verification.desk.contact_answer import Answer, with_name
 from verification.desk.section_field import Section
 from verification.problem.coated_contact import FLAT
 from verification.running.checked_files import write_atomically
@@ -22,12 +22,14 @@ FORMATS = (".png", ".pdf", ".svg")
 # Okabe and Ito's colours, distinct for the colour-blind.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 STYLES = ("-", "--", "-.", ":", (0, (6, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 3)))
+Names = Mapping[str, tuple[str, ...]]
+_NONE: Names = {}
 _SETTINGS: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "savefig.facecolor": "white"}
 
 
-def write(answer: Answer, title: str, path: Path, below: Section | None = None) -> None:
+def write(answer: Answer, title: str, path: Path, below: Section | None = None, names: Names = _NONE) -> None:
     """Write the figure; see ``save``, ``draw``."""
-    save(lambda: draw(answer, title, below), path)
+    save(lambda: draw(answer, title, below, names), path)
 
 
 def save(drawn: Callable[[], Figure], path: Path) -> None:
@@ -44,10 +46,11 @@ def save(drawn: Callable[[], Figure], path: Path) -> None:
     write_atomically(path, content.getvalue())
 
 
-def draw(answer: Answer, title: str, below: Section | None = None) -> Figure:
+def draw(answer: Answer, title: str, below: Section | None = None, names: Names = _NONE) -> Figure:
     """Stresses along x: sigma_xx with its largest values as dots; sigma_xz, sigma_zz at each interface.
 
-    Of an uncoated body those of the surface, sigma_zz = -p.   below : the section on top, if given.
+    For an uncoated body those of the surface, sigma_zz = -p.   below : the section on top, if given.
+    names : of the coatings, see ``Case``.
     """
     figure = Figure(figsize=(8.5, 9.0 if below else 6.4), layout="constrained")
     panels = figure.subplots(3 if below else 2, 2, sharex="col", width_ratios=(3, 1))
@@ -58,7 +61,9 @@ def draw(answer: Answer, title: str, below: Section | None = None) -> Figure:
     if below:
         _section(figure, panels[0, 0], panels[0, 1], below, a)
     for course, colour, style in _cycle(answer.courses):
-        upper.plot(course.x * 1e6, course.stress[0] / 1e6, linestyle=style, color=colour, label=_name(course))
+        upper.plot(
+            course.x * 1e6, course.stress[0] / 1e6, linestyle=style, color=colour, label=_name(course, names)
+        )
         for at in answer.extremes:
             if (at.body, at.where, at.quantity) == (course.body, course.where, "sigma_xx"):
                 upper.plot(at.x * 1e6, at.value / 1e6, "o", color=colour, markersize=4)
@@ -67,7 +72,7 @@ def draw(answer: Answer, title: str, below: Section | None = None) -> Figure:
     for number, name in ((3, "$σ_{xz}$"), (2, "$σ_{zz}$")):
         for course, colour, style in _cycle(bases):
             width = 1.8 if number == 3 else 0.9
-            label = f"{name}, {_name(course)}"
+            label = f"{name}, {_name(course, names)}"
             y = course.stress[number] / 1e6
             lower.plot(course.x * 1e6, y, linestyle=style, color=colour, label=label, linewidth=width)
     figure.suptitle(title, fontsize=10)
@@ -125,8 +130,9 @@ def _section(figure: Figure, axes: Axes, beside: Axes, below: Section, a: float)
     figure.colorbar(field, ax=beside, label="$σ_1$ [MPa]", fraction=0.1)
 
 
-def _name(course: Course) -> str:
-    return course.where if course.body == FLAT else f"{course.body}, {course.where}"
+def _name(course: Course, names: Names) -> str:
+    where = with_name(course.body, course.where, names)
+    return where if course.body == FLAT else f"{course.body}, {where}"
 
 
 def _cycle(courses: Sequence[Course]) -> Iterator[tuple[Course, str, Any]]:

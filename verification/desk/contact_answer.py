@@ -107,10 +107,7 @@ def summary(problem: CoatedContact, found: Answer, names: Mapping[str, tuple[str
     base, von_mises = _largest(found, "sigma_xx", "base of"), _largest(found, "von_mises")
 
     def name(at: Extreme) -> str:
-        where = "the substrate" if at.where == "substrate" else at.where
-        for number, given in enumerate((names or {}).get(at.body, ())[:-1], start=1):
-            if given and where.endswith(f"coating {number}"):
-                where += f" ({given})"
+        where = "the substrate" if at.where == "substrate" else with_name(at.body, at.where, names or {})
         if at.body == FLAT:
             return where
         coated = bool(problem.seen_from(at.body).coatings)
@@ -129,6 +126,14 @@ def summary(problem: CoatedContact, found: Answer, names: Mapping[str, tuple[str
     if von_mises:
         parts.append(f"von Mises stress up to {_mpa(von_mises)} in {name(von_mises)}")
     return f"{'; '.join(parts)}."
+
+
+def with_name(body: str, where: str, names: Mapping[str, tuple[str, ...]]) -> str:
+    """A place with the name of its coating: "base of coating 1 (DLC)"; names : see ``Case``."""
+    for number, given in enumerate(names.get(body, ())[:-1], start=1):
+        if given and where.endswith(f"coating {number}"):
+            return f"{where} ({given})"
+    return where
 
 
 def agreement(first: Answer, apart: tuple[Difference, ...]) -> str:

@@ -82,7 +82,10 @@ def print_out(*items: "Table | str") -> None:
             # The other columns give way first, unless the names fill half of the terminal.
             longest = max((len(str(cell)) for cell in item.columns[0].cells), default=0)
             item.columns[0].no_wrap = longest <= console.width / 2
-        console.print(item)
+        try:
+            console.print(item)
+        except SystemExit:  # the reader of a pipe has gone, as head does; files are still to be written
+            return
 
 
 def one_line(message: str, most: int = 1000) -> str:

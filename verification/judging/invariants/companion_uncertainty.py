@@ -16,7 +16,7 @@ from verification.problem.coated_contact import Solution
 INNER = 0.95  # of a; out to here the uncertainty of the pressure is integrated
 # LAST: an error of order 3/2 on patches sqrt(2) coarser, 1/(2^(3/4) - 1). BEFORE guards against a last change
 # that is small by chance.
-LAST, BEFORE = 1.5, 0.5
+LAST, BEFORE = 1.5, 1.0
 
 
 def followed(solution: Solution, value: Callable[[Any], Array]) -> Array | None:
