@@ -74,7 +74,8 @@ def _stiffness(beside: Neighbours) -> tuple[float, float | None]:
         for k, factor in enumerate((1 + step, 1 / (1 + step))):
             load = level.load * factor
             size = level.grid.d * radius(load) / radius(level.load)
-            start, grid = _stretched(found[k], size, load), replace(level.grid, d=size)
+            nearest = found[k] if found[k].shape is not None else level
+            start, grid = _stretched(nearest, size, load), replace(level.grid, d=size)
             pressed = beside.sphere.indenter(load, None, edge_correction=True)
             found[k] = nested.solve_on(grid, start, pressed, body, numerics)
         ends = [np.log([one.load, one.found.approach]) for one in found]
