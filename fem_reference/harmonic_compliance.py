@@ -122,7 +122,7 @@ class HarmonicCompliance:
         wave, turn = np.ones(theta.shape, dtype=complex), np.exp(1j * self.fold * theta)
         for _ in self.harmonics:
             yield wave.real
-            wave = wave * turn
+            wave *= turn
 
     def _shapes(self, r: np.ndarray) -> sp.csr_matrix:
         """phi_i(r), (points, nodes); r within the last node."""

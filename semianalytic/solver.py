@@ -45,7 +45,7 @@ ROUGH, ROOMY = (
     1.5,
 )  # patches a side of the grid that finds the contact radius, and its half-width over that
 FINER = 1.4  # patches a side of the next grid over the last
-LARGEST_GRID = 2801  # patches a side of the last for ``accuracy``,
+LARGEST_GRID = 2049  # patches a side of the last for ``accuracy``,
 LARGE_GRID = 1025  # and where refining no longer lessens the uncertainty
 
 
@@ -83,8 +83,8 @@ def solve(
     edge_correction : for the square root of the pressure at the edge (``edge_correction``). False : constant
     patches alone, whose edge is a staircase.
     accuracy : relative uncertainty of contact radius, approach and peak pressure, for which the patches are
-    refined beyond ``patches`` to at most 2801 a side, 1025 where that stops helping, and until the pressure
-    at the same x/a changes by no more than three times as much of its peak; the solution states what it
+    refined beyond ``patches`` to at most 2049 a side, 1025 where that stops helping, and until the pressure
+    at the same x/a changes by no more than four times as much of its peak; the solution states what it
     reached. None : no refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
     indenter : another shape than a sphere, (name, numbers [m]) as in ``indenter_profile``, pressed as by

@@ -24,13 +24,12 @@ __all__ = [
 
 WIDER = 1.25  # the box that tests the domain over the box in use
 SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge
-RADIUS = 1.2  # times the change before of the contact radius, which the patches at the edge move to and fro
 OUTSIDE = 3.0  # times as much where the shape is fitted near the edge alone
 SECOND = 1e-3  # of approach and peak, times (d/a)^2: what patches leave of deflection and pressure inside
 UNRESOLVED = 0.03  # patches by which the edge of a film thinner than two of them may be wrong
 # over the accuracy asked, of the change of the pressure at the same x/a; the part that is left of the change
 # before: it was seen to fall 2.4 to 10 times from one grid to the next
-PRESSURE, EARLIER = 3.0, 1 / 5
+PRESSURE, EARLIER = 4.0, 1 / 5
 FALL = 3.0  # of the uncertainty on refining twice, that makes a larger grid worth its time
 PATCHES = 1 / 2  # of the change before, of patches alone, whose edge changes erratically
 
@@ -67,13 +66,12 @@ class Uncertainty:
         share: float,
         edge: float = 0.0,
         inside: float = 0.0,
-        radius: float = 0.0,
     ) -> "Uncertainty":
         """From the results on three grids, and the changes by one other parameter that is less accurate.
 
         Patch size: ``factor`` times the change to the finest grid, or ``share`` of the change before where
-        the last is small by chance, for the contact radius ``radius`` of it; or ``edge``, the error of that
-        by patches that the edge cuts [m], or ``inside``, that of deflection and pressure there, relative.
+        the last is small by chance, or ``edge``, the error of the contact radius by patches that the edge
+        cuts [m], or ``inside``, that of deflection and pressure there, relative.
         """
         # an error of the edge is of the second order in the approach, which is stationary in the contact's
         # area
@@ -85,8 +83,7 @@ class Uncertainty:
         rows = []
         for name, value in fine.items():
             last, before = abs(value - middle[name]), abs(middle[name] - coarse[name])
-            earlier = max(share, radius) if name == "contact_radius" else share
-            found = np.max([factor * last, earlier * before, least.get(name, 0.0)])
+            found = np.max([factor * last, share * before, least.get(name, 0.0)])
             rows.append((name, "patch size", float(found)))
             rows += [(name, varied, change[name]) for varied, change in variations.items()]
         return cls._of(rows)
@@ -123,9 +120,8 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
     smooth = np.multiply(SMOOTH, OUTSIDE if last.shape and last.shape.outside else 1.0)
     factor, share = smooth if last.shape else (safety(last.grid.n / levels[-2].grid.n), PATCHES)
     inside = SECOND * (last.grid.d / min(last.shape.axes)) ** 2 if last.shape else 0.0
-    radius = RADIUS if last.shape else 0.0
     return Uncertainty.from_levels(
-        fine, middle, coarse, variations, factor=factor, share=share, edge=edge, inside=inside, radius=radius
+        fine, middle, coarse, variations, factor=factor, share=share, edge=edge, inside=inside
     )
 
 
