@@ -1,7 +1,7 @@
 """Figure of one answer: stresses along x in MPa over um, on the surface, at each interface."""
 
 import io
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from verification.desk.answer_stresses import Course
-from verification.desk.contact_answer import Answer, with_name
+from verification.desk.contact_answer import Answer, Names, with_name
 from verification.desk.section_field import Section
 from verification.problem.coated_contact import FLAT
 from verification.running.checked_files import write_atomically
@@ -22,12 +22,12 @@ FORMATS = (".png", ".pdf", ".svg")
 # Okabe and Ito's colours, distinct for the colour-blind.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 STYLES = ("-", "--", "-.", ":", (0, (6, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 3)))
-Names = Mapping[str, tuple[str, ...]]
-_NONE: Names = {}
 _SETTINGS: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "savefig.facecolor": "white"}
 
 
-def write(answer: Answer, title: str, path: Path, below: Section | None = None, names: Names = _NONE) -> None:
+def write(
+    answer: Answer, title: str, path: Path, below: Section | None = None, names: Names | None = None
+) -> None:
     """Write the figure; see ``save``, ``draw``."""
     save(lambda: draw(answer, title, below, names), path)
 
@@ -46,7 +46,7 @@ def save(drawn: Callable[[], Figure], path: Path) -> None:
     write_atomically(path, content.getvalue())
 
 
-def draw(answer: Answer, title: str, below: Section | None = None, names: Names = _NONE) -> Figure:
+def draw(answer: Answer, title: str, below: Section | None = None, names: Names | None = None) -> Figure:
     """Stresses along x: sigma_xx with its largest values as dots; sigma_xz, sigma_zz at each interface.
 
     For an uncoated body those of the surface, sigma_zz = -p.   below : the section on top, if given.
@@ -130,7 +130,7 @@ def _section(figure: Figure, axes: Axes, beside: Axes, below: Section, a: float)
     figure.colorbar(field, ax=beside, label="$σ_1$ [MPa]", fraction=0.1)
 
 
-def _name(course: Course, names: Names) -> str:
+def _name(course: Course, names: Names | None) -> str:
     where = with_name(course.body, course.where, names)
     return where if course.body == FLAT else f"{course.body}, {where}"
 

@@ -1,5 +1,4 @@
-"""The answer to one problem: contact size, largest stresses, differences from a second method, in a "
-"sentence too."""
+"""Answer to one problem: contact size, largest stresses, a sentence, differences from a second method."""
 
 import time
 from collections.abc import Mapping
@@ -16,6 +15,9 @@ from verification.sources.source_registry import SOURCES
 # Measured on one core of 2.5 GHz, an elastic ball with two thin films within 5 %.
 BODY_SECONDS, FILM_SECONDS, THIN = 4.0, 8.0, 0.1
 NUMBERS = ("peak_pressure", "contact_radius", "approach")
+
+
+Names = Mapping[str, tuple[str, ...]]  # of the coatings of each body, see ``Case``
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,7 @@ def governing(found: Answer) -> Extreme | None:
     return _largest(found, "sigma_1")
 
 
-def summary(problem: CoatedContact, found: Answer, names: Mapping[str, tuple[str, ...]] | None = None) -> str:
+def summary(problem: CoatedContact, found: Answer, names: Names | None = None) -> str:
     """Where both bodies are pulled and yield the most, and the interfaces are sheared; three digits in MPa.
 
     Where the largest tension is not that of a coating, the largest of the coatings follows; then the largest
@@ -107,7 +109,7 @@ def summary(problem: CoatedContact, found: Answer, names: Mapping[str, tuple[str
     base, von_mises = _largest(found, "sigma_xx", "base of"), _largest(found, "von_mises")
 
     def name(at: Extreme) -> str:
-        where = "the substrate" if at.where == "substrate" else with_name(at.body, at.where, names or {})
+        where = "the substrate" if at.where == "substrate" else with_name(at.body, at.where, names)
         if at.body == FLAT:
             return where
         coated = bool(problem.seen_from(at.body).coatings)
@@ -128,9 +130,9 @@ def summary(problem: CoatedContact, found: Answer, names: Mapping[str, tuple[str
     return f"{'; '.join(parts)}."
 
 
-def with_name(body: str, where: str, names: Mapping[str, tuple[str, ...]]) -> str:
-    """A place with the name of its coating: "base of coating 1 (DLC)"; names : see ``Case``."""
-    for number, given in enumerate(names.get(body, ())[:-1], start=1):
+def with_name(body: str, where: str, names: Names | None) -> str:
+    """A place with the name of its coating: "base of coating 1 (DLC)"."""
+    for number, given in enumerate((names or {}).get(body, ())[:-1], start=1):
         if given and where.endswith(f"coating {number}"):
             return f"{where} ({given})"
     return where

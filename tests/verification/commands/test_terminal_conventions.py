@@ -148,13 +148,21 @@ def test_what_is_piped_has_no_colours(tmp_path, environment):
     assert {words[0] for words in lines if words[-1:] == ["s"] or "iterations" in words} >= {"hertz"}
 
 
-def test_a_reader_that_has_seen_enough_loses_no_figure(tmp_path):
+@pytest.mark.parametrize(
+    ("words", "written"),
+    [
+        (("solve", "quick.toml", "--plot", "stresses.png"), "stresses.png"),
+        (("run", "quick.toml", "--output", "out"), "out/report.html"),
+        (("run", "quick.toml", "--output", "out", "--json"), "out/report.html"),
+    ],
+)
+def test_a_reader_that_has_seen_enough_changes_no_file_and_no_exit_code(tmp_path, words, written):
     (tmp_path / "quick.toml").write_text(QUICK)
-    asked_for = (*COMMAND, "solve", "quick.toml", "--plot", "stresses.png")
-    with subprocess.Popen(asked_for, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as solving:
-        solving.stdout.close()
-        said = solving.stderr.read()
-    assert (solving.returncode, (tmp_path / "stresses.png").is_file()) == (0, True), said
+    asked_for = (*COMMAND, *words)
+    with subprocess.Popen(asked_for, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as working:
+        working.stdout.close()
+        said = working.stderr.read()
+    assert (working.returncode, (tmp_path / written).is_file()) == (0, True), said
 
 
 def test_ctrl_c_keeps_what_was_done_and_says_so(tmp_path):

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 
-from verification.commands.common.terminal import STYLE, UNBROKEN, one_line
+from verification.commands.common.terminal import STYLE, UNBROKEN, one_line, while_read
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.outcome import DECIDED, Outcome
 from verification.regression.baseline_change import Regression, State, baseline_message
@@ -56,6 +56,7 @@ def run_json(
     }
 
 
+@while_read()
 def print_run(
     results: Sequence[CaseResult],
     page: Path,

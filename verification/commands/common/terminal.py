@@ -4,8 +4,10 @@ The command line imports this for each command, so numpy and rich are imported w
 """
 
 import json
+import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -43,11 +45,26 @@ def print_warnings(warnings: Iterable[str], name: str, *, strict: bool, silent: 
             print_error(f"warning: {name}: {message}")
 
 
+@contextmanager
+def while_read() -> Iterator[None]:
+    """Standard output, dropped from where the reader of a pipe has gone, as head does.
+
+    The command goes on: its files are still to be written, and its exit code is its own.
+    """
+    try:
+        yield
+        sys.stdout.flush()
+    except (BrokenPipeError, SystemExit):  # rich ends the program
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+@while_read()
 def print_json(content: Any) -> None:
     """Print ``content`` on standard output as JSON."""
     sys.stdout.write(json.dumps(content, indent=2) + "\n")
 
 
+@while_read()
 def print_files(files: Iterable[Path], *, as_json: bool, quiet: bool) -> None:
     """Print the paths of written ``files`` on standard output, as JSON or in lines, none if ``quiet``."""
     if as_json:
@@ -69,6 +86,7 @@ def named_table(*heads: str) -> "Table":
     return Table(Column(heads[0], overflow="fold"), *heads[1:], box=None, header_style="bold")
 
 
+@while_read()
 def print_out(*items: "Table | str") -> None:
     """Print tables with lines of markup. Names in a first column are never cut, in a file or pipe no line."""
     from rich.console import Console
@@ -82,10 +100,7 @@ def print_out(*items: "Table | str") -> None:
             # The other columns give way first, unless the names fill half of the terminal.
             longest = max((len(str(cell)) for cell in item.columns[0].cells), default=0)
             item.columns[0].no_wrap = longest <= console.width / 2
-        try:
-            console.print(item)
-        except SystemExit:  # the reader of a pipe has gone, as head does; files are still to be written
-            return
+        console.print(item)
 
 
 def one_line(message: str, most: int = 1000) -> str:
