@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from .axisymmetric import Discretisation
-from .harmonic_compliance import HarmonicCompliance, harmonic_compliance
+from .harmonic_compliance import DENSITY, HarmonicCompliance, harmonic_compliance
 from .location import SolidPoints, solid_points
 from .mesh import Grading, MeridianMesh, meridian_mesh
 from .recovery import HarmonicField
@@ -67,13 +67,12 @@ def check_pressure(
     angular = AngularPressure.of(pressure, reach)
     unit = Units(length=reach, pressure=angular.scale, modulus=substrate[0])
 
-    def under(size: float) -> OffAxisFields:
-        d = discretised(solid, size, size / 2, order)
-        compliance = harmonic_compliance(solid, d, int(harmonics), 1)
+    def under(coarser: float) -> OffAxisFields:
+        d = discretised(solid, coarser * size, coarser * size / 2, order)
+        compliance = harmonic_compliance(solid, d, int(harmonics), 1, DENSITY / coarser)
         return OffAxisFields.of(compliance, angular.nodal_loads(compliance), friction, angular)
 
-    fine = under(size)
-    return PressedSolid(fine, under(COARSER * size) if estimate_uncertainty else None, unit)
+    return PressedSolid(under(1.0), under(COARSER) if estimate_uncertainty else None, unit)
 
 
 def discretised(

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .estimate import Uncertainty
-from .harmonic_compliance import harmonic_compliance
+from .harmonic_compliance import DENSITY, harmonic_compliance
 from .indenter_height import Height, Indenter, indenter_height
 from .levels import NotConverged
 from .off_axis import OffAxisFields, PressedSolid, discretised
@@ -26,9 +26,9 @@ __all__ = ["ShapedContact", "ShapedDiagnostics", "solve_shape"]
 
 MARGIN = 1.04  # of the contact up to the last node below the pressure
 WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
-QUALITIES = {"fast": (0.5, 0.09, 64), "default": (0.42, 0.07, 96), "fine": (0.4, 0.06, 160)}
+QUALITIES = {"fast": (0.5, 0.09, 64), "default": (0.42, 0.05, 96), "fine": (0.4, 0.06, 160)}
 STIFF = 1.5e-5  # of the approach, by elements of the default size; the change from the companion may vanish
-SAFETY = 1.5  # of the change from the companion
+SAFETY = 2.0  # of the change from the companion
 AXIS = 3.0, 0.15  # times as much on the axis, where integrals in r dr hold the fields least; so far around it
 COARSER = 1.3  # triangles of the companion over those of the mesh
 FEWER = 0.7  # of the harmonics, for the change by what is beyond them
@@ -200,7 +200,7 @@ def solve_shape(
 
     def on_mesh(coarser: float, begin: StarPressure) -> tuple[OffAxisFields, Corrected, np.ndarray]:
         d = discretised(solid, coarser * size, coarser * surface, order, growth=0.8)
-        compliance = harmonic_compliance(solid, d, harmonics, fold)
+        compliance = harmonic_compliance(solid, d, harmonics, fold, DENSITY / coarser)
         found = corrected(compliance, begin, scaled_height, load / unit.load)
         if not found.converged:
             raise NotConverged(

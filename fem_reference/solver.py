@@ -108,10 +108,8 @@ def solve(
     d = final.discretisation
     check_radius(final.contact_radius * a_h, radius)
     penetration, tension = _checked_complementarity(final)
-    states = tuple(
-        ElasticState.of_contact(solid, final, body)
-        for solid, body in zip(solids, (None, final.ball), strict=False)
-    )
+    pairs = zip(solids, (None, final.ball), strict=False)
+    states = tuple(ElasticState.of_contact(solid, final, body) for solid, body in pairs)
     found: tuple[Estimates | None, ...] = (None,) * len(states)
     stiffness_error = None
     if companion:
@@ -208,9 +206,8 @@ def _size(quality: str, size: float | None, bodies: Sequence[Sequence[tuple[floa
     if size is None:
         steps = [upper[0] / lower[0] for layers in bodies for upper, lower in pairwise(layers)]
         largest = max(steps, default=1.0)
-        return min(
-            [QUALITY[quality], *(sizes[quality] for least, sizes in CONTRASTS.items() if largest > least)]
-        )
+        sizes = [QUALITY, *(finer for least, finer in CONTRASTS.items() if largest > least)]
+        return min(one[quality] for one in sizes)
     check_positive(size=size)
     if not 0.08 <= size <= 0.5:
         raise ValueError(f"size = {size:g}; choose it between 0.08 (a minute, gigabytes) and 0.5 (coarse)")

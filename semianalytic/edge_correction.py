@@ -32,6 +32,7 @@ LOST = 0.2  # of the load, the most that constant patches miss of a pressure wit
 INNER = 3e-3  # of the peak, that f may miss inside: ellipses 3e-5, a kink of the indenter's slope 0.1
 OUTER_TERMS = 6  # polynomials of a pressure that is fitted near the edge alone
 NARROW = 5  # patches between centre and edge, below which the edge is not resolved
+FEW_PATCHES = 32  # between centre and edge, of a grid whose rejection of a shape the next one tries again
 # polynomials: of an uncoated body; of a layer, the second number for each of asinh(1/e)
 FEW, LAYERED = 3, (6.0, 4.6)
 USUAL = 115  # patches in a of the default grid; beyond, a grid 1.4 times as fine has one polynomial more
@@ -46,6 +47,9 @@ def corrected(problem: LevelProblem, start: Shape | None) -> Level:
     start : shape on a coarser grid, None for that of the patches alone.
     """
     gap = problem.gap
+    before = problem.before
+    if before is not None and start is not None and start.outside:
+        start = None if min(start.axes) < FEW_PATCHES * before.grid.d else start
     if start is not None:
         terms = OUTER_TERMS if start.outside else _terms(start, problem.grid.d)
         level = _rounds(problem, gap, start.with_terms(terms), None)

@@ -40,7 +40,7 @@ DEFLECTED = 0.2  # of that floor over the peak pressure, that the displacement o
 DEEP = 0.15, 32.0
 # likewise near the edge, of the ripple of the patches, which the shape averages, and of the largest change
 # there; within some patches of it
-RIPPLE, WANDERING, TAPER = 0.9, 1.0, 16.0
+RIPPLE, WANDERING, TAPER = 0.9, 1.1, 16.0
 # times the misfit of the shape inside, where that is more; falling as the square of the distance
 MISFIT = 2.0
 RESOLUTION = 1e-7  # of the pressure of patches: its response to the gap the iteration leaves

@@ -45,7 +45,7 @@ ROUGH, ROOMY = (
     1.5,
 )  # patches a side of the grid that finds the contact radius, and its half-width over that
 FINER = 1.4  # patches a side of the next grid over the last
-LARGEST_GRID = 2049  # patches a side of the last for ``accuracy``,
+LARGEST_GRID = 2801  # patches a side of the last for ``accuracy``,
 LARGE_GRID = 1025  # and where refining no longer lessens the uncertainty
 
 
@@ -83,7 +83,7 @@ def solve(
     edge_correction : for the square root of the pressure at the edge (``edge_correction``). False : constant
     patches alone, whose edge is a staircase.
     accuracy : relative uncertainty of contact radius, approach and peak pressure, for which the patches are
-    refined beyond ``patches`` to at most 2049 a side, 1025 where that stops helping, and until the pressure
+    refined beyond ``patches`` to at most 2801 a side, 1025 where that stops helping, and until the pressure
     at the same x/a changes by no more than four times as much of its peak; the solution states what it
     reached. None : no refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
@@ -139,7 +139,7 @@ def solve(
     reached: list[float] = []
     while estimate and accuracy and edge_correction and not uncertainty.is_met(accuracy, estimate, levels):
         n = odd(FINER * levels[-1].grid.n)
-        reached.append(estimate.relative_to(levels[-1].scalars))
+        reached.append(estimate.relative_to(levels[-1].scalars, uncertainty.MOVING))
         if n > (LARGE_GRID if uncertainty.is_stalled(accuracy, reached) else LARGEST_GRID):
             break
         grid = replace(levels[-1].grid, n=n, d=2 * half_width / n)

@@ -24,12 +24,18 @@ __all__ = [
 
 WIDER = 1.25  # the box that tests the domain over the box in use
 SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge
+# Times the change before of the contact radius, which the patches at the edge move to and fro; of its own in
+# the budget, since it falls a grid later than the rest.
+RADIUS, MOVING = 1.2, "edge on the patches"
 OUTSIDE = 3.0  # times as much where the shape is fitted near the edge alone
 SECOND = 1e-3  # of approach and peak, times (d/a)^2: what patches leave of deflection and pressure inside
 UNRESOLVED = 0.03  # patches by which the edge of a film thinner than two of them may be wrong
 # over the accuracy asked, of the change of the pressure at the same x/a; the part that is left of the change
 # before: it was seen to fall 2.4 to 10 times from one grid to the next
 PRESSURE, EARLIER = 4.0, 1 / 5
+# Patches between centre and edge, below which the uncertainty grows as the fourth power of their size: a film
+# of 0.1 a on 15 patches needed 5.4 times.
+COARSE = 24.0
 FALL = 3.0  # of the uncertainty on refining twice, that makes a larger grid worth its time
 PATCHES = 1 / 2  # of the change before, of patches alone, whose edge changes erratically
 
@@ -66,12 +72,14 @@ class Uncertainty:
         share: float,
         edge: float = 0.0,
         inside: float = 0.0,
+        moving: float = 0.0,
     ) -> "Uncertainty":
         """From the results on three grids, and the changes by one other parameter that is less accurate.
 
         Patch size: ``factor`` times the change to the finest grid, or ``share`` of the change before where
         the last is small by chance, or ``edge``, the error of the contact radius by patches that the edge
         cuts [m], or ``inside``, that of deflection and pressure there, relative.
+        ``moving`` : share of the change before that the contact radius has at least, in a row of its own.
         """
         # an error of the edge is of the second order in the approach, which is stationary in the contact's
         # area
@@ -86,11 +94,16 @@ class Uncertainty:
             found = np.max([factor * last, share * before, least.get(name, 0.0)])
             rows.append((name, "patch size", float(found)))
             rows += [(name, varied, change[name]) for varied, change in variations.items()]
+            if moving and name == "contact_radius":
+                rows.append((name, MOVING, float(max(0.0, moving * before - found))))
         return cls._of(rows)
 
-    def relative_to(self, scalars: dict[str, float]) -> float:
-        """The largest uncertainty over its scalar."""
-        return max(getattr(self, name) / value for name, value in scalars.items())
+    def relative_to(self, scalars: dict[str, float], without: str = "") -> float:
+        """The largest uncertainty over its scalar, but for what is due to the origin ``without``."""
+        return max(
+            sum(value for name, origin, value in self.budget if name == scalar and origin != without) / size
+            for scalar, size in scalars.items()
+        )
 
     @classmethod
     def _of(cls, rows: list[tuple[str, str, float]]) -> "Uncertainty":
@@ -114,14 +127,17 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
         "domain": _by_other_coefficients(varied, body, numerics, numerics, WIDER),
         "iteration": _of_iteration(last, indenter),
     }
-    edge = last.staircase
-    if last.shape and _unresolved(body, last.grid.d):
-        edge = max(edge, UNRESOLVED * last.grid.d)
-    smooth = np.multiply(SMOOTH, OUTSIDE if last.shape and last.shape.outside else 1.0)
-    factor, share = smooth if last.shape else (safety(last.grid.n / levels[-2].grid.n), PATCHES)
-    inside = SECOND * (last.grid.d / min(last.shape.axes)) ** 2 if last.shape else 0.0
+    edge, inside, moving = last.staircase, 0.0, 0.0
+    factor, share = safety(last.grid.n / levels[-2].grid.n), PATCHES
+    if last.shape:
+        patch = last.grid.d / min(last.shape.axes)
+        few = max(1.0, COARSE * patch) ** 4
+        factor, share = np.multiply(SMOOTH, few * (OUTSIDE if last.shape.outside else 1.0))
+        edge, inside, moving = few * edge, SECOND * patch**2, few * RADIUS
+        if _unresolved(body, last.grid.d):
+            edge = max(edge, UNRESOLVED * last.grid.d)
     return Uncertainty.from_levels(
-        fine, middle, coarse, variations, factor=factor, share=share, edge=edge, inside=inside
+        fine, middle, coarse, variations, factor=factor, share=share, edge=edge, inside=inside, moving=moving
     )
 
 

@@ -87,7 +87,7 @@ class Search:
         if best is None:
             if U is None:
                 return Tension(highest, place, None, None)
-            change = followed(self.solution, lambda one: _tension(one, ENDS * one.contact_radius))
+            change = followed(self.solution, lambda one: _tension(one, ENDS * one.contact_radius), before=1.0)
             wide = float(edge_uncertainty(value[at], U[at], change))
             best = Tension(highest, place, wide, float(self.solution.uncertainty.contact_radius))
         if best.uncertainty is None or best.place_uncertainty is None:

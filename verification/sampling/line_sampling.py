@@ -207,7 +207,7 @@ def _has_peak(problem: CoatedContact | None) -> TypeGuard[CoatedContact]:
 
 def _at_edge(solution: Solution, value: Array, U: Array, at_own_edge: Callable[[Any], Array]) -> Array:
     """Uncertainty at the solution's own edge from values at ``around_edge`` of each side, (..., 5 sides)."""
-    change = followed(solution, at_own_edge)
+    change = followed(solution, at_own_edge, before=1.0)
     shape = (*value.shape[:-1], -1, 5)
     ends = None if change is None else change[..., None, :]
     return edge_uncertainty(value.reshape(shape), U.reshape(shape), ends)

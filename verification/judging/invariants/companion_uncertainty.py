@@ -19,8 +19,11 @@ INNER = 0.95  # of a; out to here the uncertainty of the pressure is integrated
 LAST, BEFORE = 1.5, 0.5
 
 
-def followed(solution: Solution, value: Callable[[Any], Array]) -> Array | None:
-    """Uncertainty of ``value(solution)`` from what it is for the coarser companions; None without any."""
+def followed(solution: Solution, value: Callable[[Any], Array], before: float = BEFORE) -> Array | None:
+    """Uncertainty of ``value(solution)`` from what it is for the coarser companions; None without any.
+
+    before : of the change before the last one, that counts where the last is small by chance.
+    """
     first = getattr(solution, "coarser", None)
     if first is None:
         return None
@@ -28,5 +31,5 @@ def followed(solution: Solution, value: Callable[[Any], Array]) -> Array | None:
     change = LAST * np.abs(here - there)
     second = getattr(first, "coarser", None)
     if second is not None:
-        change = np.maximum(change, BEFORE * np.abs(there - value(second)))
+        change = np.maximum(change, before * np.abs(there - value(second)))
     return change
