@@ -142,20 +142,26 @@ class Discretisation(Uncached):
 
         That factor is 2 pi for harmonic 0, pi for others. ``materials`` = (E, nu) per layer.
         """
-        return _assembled(*self._elements(materials, harmonic, slice(None)), (3 if harmonic else 2) * self.N)
+        return _assembled(
+            *self._elements(materials, harmonic, np.arange(self.mesh.layer.size)),
+            (3 if harmonic else 2) * self.N,
+        )
 
-    def skeleton(self, materials: tuple[tuple[float, float], ...], harmonic: float) -> "Skeleton":
-        """The same without the unknowns inside the triangles."""
+    def skeleton(
+        self, materials: tuple[tuple[float, float], ...], harmonic: float, cells: np.ndarray | None = None
+    ) -> "Skeleton":
+        """The same without the unknowns inside the triangles; of the triangles ``cells`` alone, or of all."""
+        cells = np.arange(self.mesh.layer.size) if cells is None else cells
         fields = 3 if harmonic else 2
         inside = np.arange(self.basis.Nbfun) >= self.basis.Nbfun - self.basis.elem.interior_dofs
         i, o = np.flatnonzero(np.tile(inside, fields)), np.flatnonzero(np.tile(~inside, fields))
-        triangles = self.mesh.layer.size
+        triangles = cells.size
         matrix = np.empty((triangles, o.size, o.size))
         extension = np.empty((triangles, i.size, o.size))
         inner, outer = (np.empty((triangles, of.size), dtype=np.int32) for of in (i, o))
         for begin in range(0, triangles, _AT_ONCE):
             some = slice(begin, begin + _AT_ONCE)
-            K, numbers = self._elements(materials, harmonic, some)
+            K, numbers = self._elements(materials, harmonic, cells[some])
             inner[some], outer[some] = numbers[:, i], numbers[:, o]
             K_io = K[:, i[:, None], o]
             extension[some] = -np.linalg.solve(K[:, i[:, None], i], K_io)
@@ -163,9 +169,9 @@ class Discretisation(Uncached):
         return Skeleton(_assembled(matrix, outer, fields * self.N), inner, outer, extension)
 
     def _elements(
-        self, materials: tuple[tuple[float, float], ...], harmonic: float, some: slice
+        self, materials: tuple[tuple[float, float], ...], harmonic: float, cells: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Stiffness (m, size, size) of ``some`` triangles and the numbers (m, size) of their unknowns.
+        """Stiffness (m, size, size) of the triangles ``cells`` and the numbers (m, size) of their unknowns.
 
         With s = (dphi/dr, dphi/dz, phi/r) of the shape functions and a, b = r, z, 0, the fields f and g of
         the functions i and j are coupled by
@@ -174,7 +180,6 @@ class Discretisation(Uncached):
 
         by quadrature that is exact but for the terms in 1/r.
         """
-        layer, cells = self.mesh.layer[some], np.arange(self.mesh.layer.size)[some]
         basis = Basis(
             self.triangulation,
             ELEMENTS[self.order](),
@@ -190,7 +195,7 @@ class Discretisation(Uncached):
 
         A = np.stack(strain_operator(harmonic))
         D = np.stack([elasticity(E, nu, harmonic) for E, nu in materials])
-        coupling = np.einsum("asf,lst,btg->lfgab", A, D, A, optimize=True)[layer]
+        coupling = np.einsum("asf,lst,btg->lfgab", A, D, A, optimize=True)[self.mesh.layer[cells]]
         fields, rows = A.shape[2], s.reshape(*s.shape[:2], -1)
         K = np.empty((len(r), fields, basis.Nbfun, fields, basis.Nbfun))
         for f in range(fields):

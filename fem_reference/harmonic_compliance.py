@@ -31,8 +31,9 @@ from .scaling import LayeredSolid
 __all__ = ["HarmonicCompliance", "harmonic_compliance"]
 
 DIRECT = 8  # harmonics below are solved one by one
-# contact radii from the axis beyond which higher harmonics vanish: like the power m + 1 of the distance, 4e-6
-FELT = 4.0
+# What is left of a higher harmonic, which falls as the power m + 1 of the distance from the axis in contact
+# radii, where it is taken as zero
+VANISHED = 4e-6
 # Points of the interpolation beyond for a factor e of m: with 2.8 the stress 0.1 a deep was 2e-3 p_h off.
 DENSITY = 4.0
 
@@ -74,13 +75,17 @@ class HarmonicCompliance:
         """Solutions, by number, whose weighted sum is that of harmonic m."""
         return _weights(self.solved, m)
 
-    def nodal_loads(self, r: np.ndarray, theta: np.ndarray, forces: np.ndarray) -> np.ndarray:
-        """L of ``forces`` (columns, arcs, points), (harmonics, nodes, columns).
+    def upto(self, last: int) -> np.ndarray:
+        """S_m of the harmonics to ``last``."""
+        return self.matrices[: last // self.fold + 1]
+
+    def nodal_loads(self, r: np.ndarray, theta: np.ndarray, forces: np.ndarray, last: int) -> np.ndarray:
+        """L of ``forces`` (columns, arcs, points), (harmonics to ``last``, nodes, columns).
 
         r, theta : radius of each arc (arcs,) and angles on it (arcs, points)
         """
         onto, at_arcs = self._shapes(r).T, forces.transpose(1, 2, 0)
-        return np.array([onto @ (wave[:, None, :] @ at_arcs)[:, 0] for wave in self._waves(theta)])
+        return np.array([onto @ (wave[:, None, :] @ at_arcs)[:, 0] for wave in self._waves(theta, last)])
 
     def products(self, r: np.ndarray, values: np.ndarray) -> np.ndarray:
         """sum_k values_mk phi_i(r_k), (harmonics, nodes), of values (harmonics, radii)."""
@@ -90,7 +95,7 @@ class HarmonicCompliance:
         """u_z on arcs as in ``nodal_loads`` under ``loads`` (harmonics, nodes), (arcs, points)."""
         of_arcs = self._shapes(r) @ np.einsum("mij,mj->im", self.matrices, loads)
         u = np.zeros(theta.shape)
-        for amplitude, wave in zip(of_arcs.T, self._waves(theta), strict=True):
+        for amplitude, wave in zip(of_arcs.T, self._waves(theta, self.last), strict=True):
             u += amplitude[:, None] * wave
         return u
 
@@ -118,12 +123,12 @@ class HarmonicCompliance:
 
         return _superposed(solved, pulled, respond)
 
-    def _waves(self, theta: np.ndarray) -> Iterator[np.ndarray]:
-        """cos(m theta) of every harmonic m."""
+    def _waves(self, theta: np.ndarray, last: int) -> Iterator[np.ndarray]:
+        """cos(m theta) of the harmonics m to ``last``."""
         wave, turn = np.ones(theta.shape, dtype=complex), np.exp(1j * self.fold * theta)
-        for _ in self.harmonics:
+        for _ in range(0, last + 1, self.fold):
             yield wave.real
-            wave *= turn
+            wave = wave * turn
 
     def _shapes(self, r: np.ndarray) -> sp.csr_matrix:
         """phi_i(r), (points, nodes); r within the last node."""
@@ -184,8 +189,9 @@ def _superposed(
     respond : field vectors (n, columns) of a solution, by number, under loads (.., nodes, columns)
     """
     found: dict[int, np.ndarray] = {}
+    weights = {m: _weights(solved, m) for m in loads}
     for k in range(len(solved)):
-        shares = [(m, w) for m in loads for j, w in _weights(solved, m) if j == k]
+        shares = [(m, w) for m in loads for j, w in weights[m] if j == k]
         if not shares:
             continue
         columns = np.stack([w * loads[m] for m, w in shares], axis=-1)
@@ -208,10 +214,12 @@ class Meridian:
     def of(cls, solid: LayeredSolid, d: Discretisation, m: float) -> "Meridian":
         count = 2 if m == 0 else 3
         axis: tuple[int, ...] = (0,) if m == 0 else (0, 2) if m == 1 else (0, 1, 2)
-        K = d.skeleton(solid.materials, m)
         fixed = [field * d.N + d.axis for field in axis]
-        r, z = d.locations
-        still = d.outer if m < DIRECT else np.flatnonzero(np.hypot(r, z) > FELT)
+        still, cells = d.outer, None
+        if m >= DIRECT:
+            beyond = np.hypot(*d.locations) > VANISHED ** (-1 / (m + 1))
+            still, cells = np.flatnonzero(beyond), np.flatnonzero(~beyond[d.basis.element_dofs].all(axis=0))
+        K = d.skeleton(solid.materials, m, cells)
         fixed += [field * d.N + still for field in range(count)]
         return cls(solid, d, m, K, ConstrainedFactor.of(K.matrix, np.concatenate([*fixed, K.inner.ravel()])))
 

@@ -26,12 +26,15 @@ __all__ = ["ShapedContact", "ShapedDiagnostics", "solve_shape"]
 
 MARGIN = 1.04  # of the contact up to the last node below the pressure
 WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
-QUALITIES = {"fast": (0.5, 0.09, 64), "default": (0.42, 0.05, 96), "fine": (0.4, 0.06, 160)}
-STIFF = 1.5e-5  # of the approach, by elements of the default size; the change from the companion may vanish
+QUALITIES = {"fast": (0.5, 0.09, 120), "default": (0.38, 0.05, 240), "fine": (0.34, 0.04, 360)}
+STIFF = 1e-5  # of approach and peak, by elements of the default size; the change to the companion may vanish
 SAFETY = 2.0  # of the change from the companion
-AXIS = 3.0, 0.15  # times as much on the axis, where integrals in r dr hold the fields least; so far around it
+AXIS = 4.0, 0.15  # times as much on the axis, where integrals in r dr hold the fields least; so far around it
 COARSER = 1.3  # triangles of the companion over those of the mesh
-FEWER = 0.7  # of the harmonics, for the change by what is beyond them
+CORRECTING = 96  # of the harmonics, that correct the pressure
+FEWER = 0.7  # of these, for the change by what is beyond them
+# times the gap left over the approach, of the numbers of the contact: waves of the pressure deflect less
+LEFT = np.array([1.0, 1.0, 3.0, 1.0, 1.0])
 TYPICAL = 97  # per cent of points below the contact whose stress changes less from the companion
 SAMPLES = 8, 3, 7  # of such points by radius, angle and depth
 
@@ -195,13 +198,15 @@ def solve_shape(
     check_proportions(solid.thicknesses, "the contact's extent")
     scaled = pressure.scaled(reach, E)
 
+    correcting = min(CORRECTING, harmonics)
+
     def scaled_height(x: Any, y: Any) -> Any:
         return height(x * reach, y * reach) / reach
 
     def on_mesh(coarser: float, begin: StarPressure) -> tuple[OffAxisFields, Corrected, np.ndarray]:
         d = discretised(solid, coarser * size, coarser * surface, order, growth=0.8)
         compliance = harmonic_compliance(solid, d, harmonics, fold, DENSITY / coarser)
-        found = corrected(compliance, begin, scaled_height, load / unit.load)
+        found = corrected(compliance, begin, scaled_height, load / unit.load, correcting)
         if not found.converged:
             raise NotConverged(
                 f"the pressure under the {indenter[0]} is not settled after {found.steps} corrections; "
@@ -211,7 +216,7 @@ def solve_shape(
         beyond = np.zeros(5)
         if coarser > 1:
             fewer = corrected(
-                compliance, found.pressure, scaled_height, load / unit.load, int(FEWER * harmonics)
+                compliance, found.pressure, scaled_height, load / unit.load, int(FEWER * correcting)
             )
             beyond = np.abs(_numbers(fewer) - _numbers(found))
         return fields, found, beyond
@@ -222,8 +227,9 @@ def solve_shape(
     if estimate_uncertainty:
         coarse, companion, beyond = on_mesh(COARSER, found.pressure)
         change = SAFETY * np.abs(numbers - _numbers(companion))
-        change[1] = max(change[1], STIFF * (size / QUALITIES["default"][0]) ** 4 * numbers[1])
-        left = found.residual * np.abs(numbers)
+        stiff = STIFF * (size / QUALITIES["default"][0]) ** 4
+        change[1:3] = np.maximum(change[1:3], stiff * numbers[1:3])
+        left = found.residual * np.abs(numbers) * LEFT
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
         parts = (("element size", change), ("harmonics", beyond), ("gap left", left))

@@ -239,16 +239,17 @@ def corrected(
     given: StarPressure,
     height: Pressure,
     load: float,
-    last: int | None = None,
+    last: int,
 ) -> Corrected:
     """Pressure under which the gap below an indenter of ``height`` (x, y) vanishes; scaled units.
 
-    last : harmonic at which the compliance is cut off, for an estimate of what is beyond
+    last : harmonic at which the compliance is cut off for the corrections, which are smooth; not for the
+    loads and the gap that are found
     """
-    used = compliance.harmonics <= (compliance.last if last is None else last)
+    vertices, matrices = compliance.nodes[:: compliance.discretisation.order], compliance.upto(last)
     pressure = given
     for step in range(STEPS + 1):
-        at = pressure.quadrature(compliance.nodes[:: compliance.discretisation.order], compliance.last)
+        at = pressure.quadrature(vertices, last)
         p = pressure(at.x, at.y)
         root = np.sqrt(1 - at.s**2)
         smooth = root * pressure.polynomials(at.s, at.tau, DEGREE)
@@ -257,11 +258,10 @@ def corrected(
         tests = root**3 * pressure.polynomials(at.s, at.tau, DEGREE + 2)
         forces = np.concatenate([[p], smooth, moved, tests]) * at.weights
         k = 1 + len(smooth) + len(moved)
-        L = compliance.nodal_loads(at.r, at.theta, forces.reshape(-1, *at.theta.shape))
-        L = L * used[:, None, None]
+        L = compliance.nodal_loads(at.r, at.theta, forces.reshape(-1, *at.theta.shape), last)
         known = height(at.x, at.y)
         total = forces.sum(axis=1)
-        work = np.einsum("mit,mic->tc", L[:, :, k:], compliance.matrices @ L[:, :, :k])
+        work = np.einsum("mit,mic->tc", L[:, :, k:], matrices @ L[:, :, :k])
         A = np.zeros((len(tests) + 1, k))
         A[:-1, :-1], A[:-1, -1], A[-1, :-1] = work[:, 1:], -total[k:], total[1:k]
         b = np.append(-work[:, 0] - forces[k:] @ known, load - total[0])
@@ -278,8 +278,11 @@ def corrected(
             coefficients=pressure.coefficients + share * x[:n],
             edge=pressure.edge + share * x[n:-1],
         )
-    loads = L[:, :, 0]
-    gap = compliance.deflection(loads, at.r, at.theta).ravel() + known - x[-1]
-    forces = at.weights * p
+    at = pressure.quadrature(vertices, compliance.last)
+    forces = at.weights * pressure(at.x, at.y)
+    loads = compliance.nodal_loads(at.r, at.theta, forces.reshape(1, *at.theta.shape), compliance.last)[
+        ..., 0
+    ]
+    gap = compliance.deflection(loads, at.r, at.theta).ravel() + height(at.x, at.y) - x[-1]
     residual = float(np.sqrt((forces * gap**2).sum() / forces.sum()) / x[-1])
     return Corrected(pressure, loads, float(x[-1]), residual, step, size < CLOSE)

@@ -50,8 +50,9 @@ def test_a_harmonic_between_those_solved_is_interpolated():
     m = 12
     assert m in all_.solved
     assert m not in many.solved
-    found, exact = (one.matrices[m // 2] for one in (many, all_))
-    np.testing.assert_allclose(found, exact, rtol=0, atol=1e-3 * np.abs(exact).max())
+    # the whole field, not the deflection alone: the stress below the surface is further off
+    found, exact = (sum(w * one.fields[k] for k, w in one.weights(m)) for one in (many, all_))
+    np.testing.assert_allclose(found, exact, rtol=0, atol=2e-4 * np.abs(exact).max())
 
 
 def test_sliding_gives_the_tractions_of_the_product_with_the_direction():
