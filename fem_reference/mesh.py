@@ -193,13 +193,16 @@ def _triangulate(
         fan = f"{_literal(grading.edge_rate)}*{rho}^{_literal(_FAN)}"
         origin = f"Sqrt((x-({_literal(xi[0])}))^2+y*y)"
         distant = _literal(grading.far_size)
-        if grading.surface:  # fine below the pressure alone
+        if (
+            grading.surface
+        ):  # fine below the pressure alone; all along the axis, where r dr holds fields least
+            origin = f"(x-({_literal(xi[0])}))"
             distant = f"{distant}*(1+0.2*Max(0,{rho}-{_literal(bare)}))"
         sizes = [
             f"{fan}+{_literal(grading.edge_size * scale)}",
             f"Min({distant},{_literal(grading.size)}*{growth})",
             # p(0) has no neighbours on its other side: finer triangles at the point of first contact
-            f"{_literal(grading.axis_size)}+0.3*{origin}",
+            f"{_literal(grading.axis_size)}*{growth}+0.3*{origin}",
         ]
         if grading.surface:  # dr = l cosh(xi) dxi
             even = f"({_literal(grading.surface * scale)}+{_literal(_BELOW)}*y)/Cosh(Min(x,0))"

@@ -29,6 +29,7 @@ Pressure = Callable[[Any, Any], Any]
 
 ANGLES = 2048  # midpoints on half a circle: p falls to zero like a square root there
 RADIAL = 48  # points between two vertices of the surface: p_m has kinks there
+AXIS = 0.3  # triangles at the axis over those elsewhere
 COARSER = 1.4  # triangles of the companion over those of the mesh
 NEGLIGIBLE = 1e-9  # of the largest: a harmonic of the pressure below is left out
 # What lies beyond the last harmonic, over what the last third of them adds: of the deflection, whose terms
@@ -86,7 +87,7 @@ def discretised(
         size,
         1.9 * size,
         size,
-        size,
+        AXIS * size,
         far_size=min(growth * size, 0.7),
         film_size=2 * size,
         rows=0.8 / size,

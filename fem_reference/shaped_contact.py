@@ -26,15 +26,17 @@ __all__ = ["ShapedContact", "ShapedDiagnostics", "solve_shape"]
 
 MARGIN = 1.04  # of the contact up to the last node below the pressure
 WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
-QUALITIES = {"fast": (0.5, 0.09, 120), "default": (0.38, 0.05, 240), "fine": (0.34, 0.04, 360)}
-STIFF = 1e-5  # of approach and peak, by elements of the default size; the change to the companion may vanish
+QUALITIES = {"fast": (0.5, 0.09, 120), "default": (0.38, 0.05, 240), "fine": (0.38, 0.045, 288)}
+STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish
+WAVES = 4e-5  # of the peak, by short waves of the pressure given: 5e-5 in one of 30 ellipses, on both meshes
 SAFETY = 2.0  # of the change from the companion
-AXIS = 4.0, 0.15  # times as much on the axis, where integrals in r dr hold the fields least; so far around it
+AXIS = (
+    2.25,
+    0.15,
+)  # times as much on the axis, where integrals in r dr hold the fields least; so far around it
 COARSER = 1.3  # triangles of the companion over those of the mesh
 CORRECTING = 96  # of the harmonics, that correct the pressure
 FEWER = 0.7  # of these, for the change by what is beyond them
-# times the gap left over the approach, of the numbers of the contact: waves of the pressure deflect less
-LEFT = np.array([1.0, 1.0, 3.0, 1.0, 1.0])
 TYPICAL = 97  # per cent of points below the contact whose stress changes less from the companion
 SAMPLES = 8, 3, 7  # of such points by radius, angle and depth
 
@@ -228,8 +230,8 @@ def solve_shape(
         coarse, companion, beyond = on_mesh(COARSER, found.pressure)
         change = SAFETY * np.abs(numbers - _numbers(companion))
         stiff = STIFF * (size / QUALITIES["default"][0]) ** 4
-        change[1:3] = np.maximum(change[1:3], stiff * numbers[1:3])
-        left = found.residual * np.abs(numbers) * LEFT
+        change[1:3] = np.maximum(change[1:3], np.array([stiff, WAVES]) * numbers[1:3])
+        left = found.residual * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
         parts = (("element size", change), ("harmonics", beyond), ("gap left", left))

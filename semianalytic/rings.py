@@ -39,7 +39,7 @@ RING = 48  # and a ring around a point
 BISECTIONS, SECANTS = 6, 9  # steps to where a ring crosses the edge: t is within 1e-9 of 0
 FLAT = 1e-9  # relative change of t along a ring that has no nearest place to the edge
 NODE = 64, 32  # points of a ring within a node, on a panel of rings: 2e-6 of the field of unit pressure
-AT_ONCE = 40_000  # points of the pressure held at a time
+AT_ONCE = 400_000  # points of the pressure held at a time
 
 
 @dataclass(frozen=True, eq=False)

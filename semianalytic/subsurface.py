@@ -48,7 +48,7 @@ __all__ = [
 
 Array = NDArray[Any]
 
-PAIRS = 20_000  # points times rings held at a time
+PAIRS = 200_000  # points times rings held at a time
 # Chebyshev depths within an octave of the reach: 10 leave 1e-6 of p0; fewer depths are taken as they are
 DEPTHS = 14
 
