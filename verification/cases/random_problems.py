@@ -23,6 +23,12 @@ FILM_RATIO = (0.1, 10.0)
 FILM_THICKNESS = (0.001, 0.02)  # h / a_h
 OVER_INTERLAYER = (0.001, 0.2)  # h / a_h of the outer of two
 MOST_FILMS = 2
+# Of ellipses on one coating.
+ELONGATION = (1.5, 4.0)  # about the ratio of the axes; that of the radii to the power 1.5
+CLOSE_RATIO = (0.25, 4.0)  # E1/E2
+OF_SHORT_AXIS = (0.1, 2.0)  # h over the short half-axis
+SLIDING = (0.0, 0.1, 0.3, 0.5)
+LARGE_RADIUS, LOAD, STEEL = 20e-3, 20.0, 210e9  # m, N, Pa
 ELASTIC = 0.5  # share of the problems with an elastic ball, of no coating to three
 FRICTIONLESS = 1 / 3  # share of the problems with f = 0, the only ones with a symmetric stress
 # Linear elasticity has no length scale: these ranges only exclude an effect of the units.
@@ -99,6 +105,33 @@ def draw(seed: int, number: int, films: bool = False) -> Draw:
             f"thickness_over_a_h = {h!r}",
         ]
     return Draw(f"{kind}_{seed}_{number:03d}", title, "\n".join(lines) + "\n")
+
+
+def draw_ellipse(seed: int, number: int) -> Draw:
+    """Ellipsoid ``number`` of the sequence ``seed`` on one coating; x is its long or its short axis."""
+    random = np.random.default_rng([seed, number])
+    elongation = random.uniform(*ELONGATION)
+    ratio, h = (float(np.exp(random.uniform(*np.log(bounds)))) for bounds in (CLOSE_RATIO, OF_SHORT_AXIS))
+    nu, nu_below = random.uniform(0.1, 0.45, 2)
+    friction = float(random.choice(SLIDING))
+    radii = [_rounded(LARGE_RADIUS / elongation**1.5), LARGE_RADIUS]
+    if random.uniform() < 0.5:
+        radii.reverse()
+    title = f"Ellipse {number} of seed {seed}: about {elongation:.3g} : 1, E1/E2 = {ratio:.3g}, h = {h:.3g} b"
+    lines = [
+        f'title = "{title}, f = {friction:.3g}"',
+        'source = "drawn at random"',
+        "[problem]",
+        f'indenter = {{ shape = "ellipsoid", radii = {radii!r} }}',
+        f"load = {LOAD!r}",
+        f"friction = {friction!r}",
+        f"substrate = {{ E = {STEEL!r}, nu = {_rounded(nu_below)!r} }}",
+        "[[problem.coatings]]",
+        f"E = {_rounded(ratio * STEEL)!r}",
+        f"nu = {_rounded(nu)!r}",
+        f"thickness_over_a_h = {_rounded(h / elongation**0.5)!r}",
+    ]
+    return Draw(f"ellipse_{seed}_{number:03d}", title, "\n".join(lines) + "\n")
 
 
 def _thicknesses(random: np.random.Generator, coatings: int) -> list[float]:

@@ -18,6 +18,7 @@ from verification.cases.random_problems import (
     THICKNESS,
     THINNEST,
     draw,
+    draw_ellipse,
 )
 from verification.credibility.false_alarms import counted
 from verification.desk.stack_text import outside_verified
@@ -57,6 +58,21 @@ def test_draws_of_films_are_one_or_two_thin_films_under_a_ball_without_coatings(
     h = [case.problem.coatings[-1][2] / case.problem.a_h for case in cases]
     assert 0.001 * (1 - 1e-3) <= min(h) < 0.0015 < 0.015 < max(h) <= 0.02 * (1 + 1e-3)
     assert not any(outside_verified(case) for case in cases)
+
+
+def test_ellipses_are_drawn_either_way_on_one_coating_and_compared_by_two_methods():
+    cases = [parse_case(draw_ellipse(7, k).text.encode(), Path("ellipse.toml")) for k in range(100)]
+    problems = [case.problem for case in cases]
+    assert {len(one.coatings) for one in problems} == {1}
+    radii = [one.indenter[1] for one in problems]
+    assert {long > short for long, short in radii} == {True, False}
+    assert (
+        1.5
+        < min(max(pair) / min(pair) for pair in radii)
+        < max(max(pair) / min(pair) for pair in radii)
+        < 8.1
+    )
+    assert {claim.between for case in cases for claim in case.claims} == {("semianalytic", "fem_reference")}
 
 
 def test_every_draw_is_a_valid_case_within_the_ranges_with_every_claim():

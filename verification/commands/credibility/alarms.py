@@ -7,7 +7,7 @@ from pathlib import Path
 from rich.markup import escape
 
 from verification.cases.case_file import Case, parse_case
-from verification.cases.random_problems import draw
+from verification.cases.random_problems import draw, draw_ellipse
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import RECORDS, require_checkout
@@ -40,6 +40,7 @@ def alarms(
     count: int = 24,
     seed: int = 1,
     films: Flag = False,
+    ellipses: Flag = False,
     output: Output = Path("reports/alarms"),
     record: Flag = False,
     records: RecordsFolder = RECORDS,
@@ -59,6 +60,7 @@ def alarms(
         count: Number of problems.
         seed: Seed of the random numbers.
         films: A film of h/a_h from 0.001 to 0.02, alone or below one up to 0.2; E1/E2 from 0.1 to 10.
+        ellipses: Ellipses 1.5 to 4 : 1 on a coating of E1/E2 from 0.25 to 4; inconclusive ones near the edge.
         output: Directory of the report, of the results, of the case files.
         record: Store the record as RECORDS/alarms.json, for the credibility page of every report.
         time_limit: Seconds one problem may take before it is stopped and counted as alarms.
@@ -66,8 +68,11 @@ def alarms(
     jobs = worker_count(jobs, time_limit)
     if count < 1 or seed < 0:
         raise CommandError(f"--count = {count}, --seed = {seed}; only the seed may be zero, none negative")
-    if record and films:
-        raise CommandError("--record with --films; the record is that of all random problems, leave one out")
+    kind = "--films" if films else "--ellipses" if ellipses else ""
+    if films and ellipses:
+        raise CommandError("--films with --ellipses; the problems are of one kind, leave one out")
+    if record and kind:
+        raise CommandError(f"--record with {kind}; the record is that of all random problems, leave one out")
     if record:
         require_checkout(records, "--records")
     require_gmsh()
@@ -77,12 +82,12 @@ def alarms(
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):
-        cases = [_case(seed, number, films, output) for number in range(count)]
+        cases = [_case(seed, number, kind, output) for number in range(count)]
         kept = kept_results(cases, output) if resume else {}
         tasks = [case_task(case, output) for case in cases if case.name not in kept]
         solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
         results = [kept.get(case.name) or solved[case.name] for case in cases]
-        of = f"--count {count} --seed {seed}{' --films' if films else ''}"
+        of = f"--count {count} --seed {seed} {kind}".rstrip()
         info = run_info(f"coatcheck alarms {of}", started, jobs)
         page = write_report(Material(results, info), output, junit_xml(results, info))
         found = counted(results, seed, info)
@@ -94,8 +99,8 @@ def alarms(
     return exit_code(results)
 
 
-def _case(seed: int, number: int, films: bool, output: Path) -> Case:
-    drawn = draw(seed, number, films)
+def _case(seed: int, number: int, kind: str, output: Path) -> Case:
+    drawn = draw_ellipse(seed, number) if kind == "--ellipses" else draw(seed, number, kind == "--films")
     path = output / "problems" / f"{drawn.name}.toml"
     write_atomically(path, drawn.text)
     return parse_case(drawn.text.encode(), path)
