@@ -13,7 +13,7 @@ import numpy as np
 from cyclopts import Parameter
 from rich.markup import escape
 
-from verification.cases.case_file import Case, read_case, shipped_cases
+from verification.cases.case_file import Case, default_cases, read_case
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import PACKAGE
@@ -27,7 +27,7 @@ from verification.commands.common.terminal import (
     print_json,
     print_out,
 )
-from verification.guests.exam_subjects import REFERENCE
+from verification.guests.exam_subjects import reference_of, subject_of
 from verification.guests.examination import Examined, examined, outcome_counts, packed_cases
 from verification.guests.guest_description import FILE, Guest, parse_guest, read_guest
 from verification.guests.pages.guest_page import badge, summary
@@ -207,7 +207,7 @@ def _show(guest: Guest, result: CaseResult) -> None:
     table = named_table("quantity", "line", "at", "guest", "exact", "difference", "verdict")
     for claim, verdict in result.verdicts:
         mine = result.profile_of.get((claim.quantity, claim.line, guest.name))
-        exact = result.profile_of.get((claim.quantity, claim.line, REFERENCE))
+        exact = result.profile_of.get((claim.quantity, claim.line, reference_of(result.problem)))
         if verdict.outcome is Outcome.UNSUPPORTED or mine is None or exact is None:
             continue
         if (claim.quantity, claim.line) in explained:
@@ -250,10 +250,14 @@ def exit_code(found: Examined) -> int:
 
 
 def _chosen(names: Sequence[str]) -> list[Case]:
-    shipped = shipped_cases()
+    shipped = default_cases()
     cases = [read_case(path_of(name, shipped, SHIPPED)) for name in names or shipped]
     require_distinct([case.name for case in cases])
-    return cases
+    exact = [case for case in cases if subject_of(case).claims]
+    if names and exact != cases:
+        name = next(case.name for case in cases if case not in exact)
+        raise CommandError(f"{name}: no exact values are known for it; leave it out")
+    return exact
 
 
 def _packed(guest: Guest) -> list[str]:
@@ -261,7 +265,7 @@ def _packed(guest: Guest) -> list[str]:
     if guest.results is None:
         return []
     place = guest.folder / guest.results
-    found = [name for name in shipped_cases() if (place / name).is_dir()]
+    found = [name for name in default_cases() if (place / name).is_dir()]
     if not found:
         raise CommandError(f"{place}: holds no shipped case; run guest pack, or name the case files")
     return found

@@ -7,12 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from verification.guests.exam_subjects import REFERENCE, SquareLoad, Subject
+from verification.guests.exam_subjects import SquareLoad, Subject, reference_of
 from verification.guests.guest_description import Guest
 from verification.guests.guest_protocol import (
     Answer,
     Disc,
     ElasticBall,
+    Ellipsoid,
     Layer,
     LineOfPoints,
     Problem,
@@ -45,7 +46,8 @@ class Exam:
 
 def prepare(case: Subject, path: Path) -> None:
     """Solve ``case`` exactly, sample it on its lines, store it at ``path``."""
-    result = CaseResult.of(case, sources=(SourceResult(REFERENCE, 0.0),), profiles=case.exact())
+    source = SourceResult(reference_of(case.problem), 0.0)
+    result = CaseResult.of(case, sources=(source,), profiles=case.exact())
     write_checked(path, to_json(result) | {"made_by": fingerprint()})
 
 
@@ -83,7 +85,7 @@ def claims_of(case: Subject, guest: Guest) -> tuple[Claim, ...]:
         Claim(
             claim.quantity,
             claim.line,
-            (guest.name, REFERENCE),
+            (guest.name, reference_of(case.problem)),
             max(claim.cap, guest.claim or 0.0),
             claim.why,
             max(claim.edge, guest.edge) if claim.line in ALONG_SURFACE else claim.edge,
@@ -143,6 +145,15 @@ def _in_units(case: Subject, guest: Guest) -> Problem:
         return Square(side=problem.side / m, pressure=problem.pressure / Pa, **solid)
     if not isinstance(problem, CoatedContact):
         return Disc(load_radius=problem.load_radius / m, pressure=problem.pressure / Pa, **solid)
+    if problem.indenter is not None:
+        along, across = problem.indenter[1]
+        return Ellipsoid(
+            radius_x=along / m,
+            radius_y=across / m,
+            load=problem.load / N,
+            friction=problem.friction,
+            **solid,
+        )
     ball = problem.ball and ElasticBall(
         E=problem.ball[0] / Pa, nu=problem.ball[1], coatings=materials(problem.ball[2])
     )

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import Akima1DInterpolator
 from scipy.optimize import minimize_scalar
 
-from verification.guests.exam_subjects import REFERENCE
+from verification.guests.exam_subjects import reference_of
 from verification.problem.array_types import Array
 from verification.problem.line_profile import ON_BALL
 from verification.problem.quantity import DISPLACEMENTS, PEAKS, STRESSES, unit_of
@@ -63,7 +63,11 @@ class Explanation:
 
 def explanation(result: CaseResult, guest: str, wrong: list[Key]) -> Explanation:
     """The smallest set of slips that explains the answers of ``guest`` at the ``wrong`` places."""
-    exact = {(p.quantity, p.line): (p.value, True) for p in result.profiles if p.source == REFERENCE}
+    exact = {
+        (p.quantity, p.line): (p.value, True)
+        for p in result.profiles
+        if p.source == reference_of(result.problem)
+    }
     given = {(p.quantity, p.line): p.value for p in result.profiles if p.source == guest}
     given = {key: g for key, g in given.items() if key in exact and np.isfinite(g).all()}
     wrong = [key for key in wrong if key in given]
@@ -119,7 +123,7 @@ def _misfit(g: Array, p: Array, known: bool, near: NDArray[np.bool_] | None) -> 
 
 def _near_edge(result: CaseResult) -> dict[str, NDArray[np.bool_]]:
     """Points of the lines on the surface that lie beside the contact edge, where no slip is tested."""
-    a = float(result.profile_of["contact_radius", "contact", REFERENCE].value[0])
+    a = float(result.profile_of["contact_radius", "contact", reference_of(result.problem)].value[0])
     lines = {p.line: p.position for p in result.profiles if p.line in ("surface", "oblique surface")}
     return {line: np.asarray(np.abs(np.abs(x) - a) < EDGE * a) for line, x in lines.items()}
 

@@ -4,8 +4,9 @@ A prescribed load tries the response of the solid without the search for the con
 profile hides the error of a poor influence coefficient.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -17,13 +18,12 @@ from verification.problem.coated_contact import CoatedContact, PrescribedLoad
 from verification.problem.line_profile import Line, Profile, line_of, lines_of, oblique_lines
 from verification.problem.quantity import DISPLACEMENTS, IN_PLANE, QUANTITIES, STRESSES
 from verification.sampling.line_sampling import positions, sample, sample_contact
-from verification.sources.exact_sources import solve_exactly
+from verification.sources.exact_sources import hertz, solve_exactly
 from verification.sources.references.patch_displacement import surface_coefficient
 from verification.sources.source_registry import EXACT, METHODS
 
 REFERENCE = EXACT[0]
-# Claims of a case are about pairs of sources; those of the first method are the ones that a guest meets.
-PATTERN = (METHODS[0], REFERENCE)
+CLOSED_FORM = "hertz"
 SPHERE, DISC, SQUARE = "sphere", "disc", "square"
 PLANE, ROW, DIAGONAL = "plane", "row", "diagonal"
 DEPTH = 0.6  # of the plane over a_h
@@ -44,6 +44,12 @@ class SquareLoad:
 
 
 Load = CoatedContact | PrescribedLoad | SquareLoad
+
+
+def reference_of(problem: CoatedContact | Mapping[str, Any]) -> str:
+    """The source of the exact values of a contact, or of its record: of an ellipsoid Hertz's closed form."""
+    indenter = problem.get("indenter") if isinstance(problem, Mapping) else problem.indenter
+    return CLOSED_FORM if indenter else REFERENCE
 
 
 @dataclass(frozen=True)
@@ -85,6 +91,8 @@ class Subject(Case):
         problem = self.loaded
         if isinstance(problem, SquareLoad):
             return self._under_square(problem)
+        if self.problem.indenter is not None:
+            return sample_contact(hertz(self.problem), CLOSED_FORM, self.problem)
         solution = solve_exactly(problem)
         places = positions(
             self.problem, [line for line in self.lines if line.name != PLANE], {REFERENCE: solution}
@@ -128,7 +136,9 @@ def plane_of(problem: CoatedContact) -> Line:
 def subject_of(case: Case, load: str = SPHERE) -> Subject:
     """``case`` under ``load``, with its claims about the exact reference."""
     given = {f.name: getattr(case, f.name) for f in fields(Case)}
-    own = tuple(claim for claim in case.claims if claim.between == PATTERN)
+    # Claims of a case are about pairs of sources; those of the first method are the ones that a guest meets.
+    pattern = (METHODS[0], reference_of(case.problem))
+    own = tuple(claim for claim in case.claims if claim.between == pattern)
     subject = Subject(**given | {"claims": own}, load=load)
     if load == SPHERE:
         # Of a case file with claims of its own nothing more is judged.
@@ -147,7 +157,7 @@ def subjects_of(cases: Iterable[Case], guest: Guest) -> tuple[Subject, ...]:
     found = []
     for case in cases:
         found.append(subject_of(case))
-        if not case.problem.friction and case.problem.ball is None:
+        if not case.problem.friction and case.problem.ball is None and case.problem.indenter is None:
             found += [subject_of(case, load) for load in (DISC, SQUARE) if load in guest.supports.loads]
     return tuple(found)
 
@@ -168,4 +178,5 @@ def _of_disc(problem: CoatedContact) -> list[Claim]:
 
 def _claims(line: str, quantities: Iterable[str]) -> tuple[Claim, ...]:
     why = "the response of the solid, without the search for the contact"
-    return tuple(Claim(name, line, PATTERN, QUANTITIES[name].cap, why) for name in quantities)
+    pattern = (METHODS[0], REFERENCE)
+    return tuple(Claim(name, line, pattern, QUANTITIES[name].cap, why) for name in quantities)

@@ -32,11 +32,13 @@ LEAST_LEVELS, MOST_LEVELS = 3, 12
 class Supports(Strict):
     """What a code can solve: the largest number of coatings, friction, stresses, an elastic ball.
 
+    ellipsoid : an indenter with two radii of curvature.
     loads : prescribed ones, each a uniform pressure on a disc or on a square.
     """
 
     coatings: Annotated[int, Field(ge=0, le=50)] = 0
     ball: bool = False
+    ellipsoid: bool = False
     friction: bool = False
     stress: bool = False
     loads: Annotated[list[Literal["disc", "square"]], Field(max_length=2)] = Field(default=[])
@@ -122,6 +124,8 @@ class Guest(GuestFile):
             return "the guest does not support friction"
         if problem.ball is not None and not self.supports.ball:
             return "the guest does not support an elastic ball"
+        if problem.indenter is not None and not self.supports.ellipsoid:
+            return "the guest does not support an ellipsoid"
         return None
 
     def gives(self, quantity: str) -> bool:

@@ -54,6 +54,17 @@ class Sphere(_Strict):
     ball: ElasticBall | None = None
 
 
+class Ellipsoid(_Strict):
+    """A rigid ellipsoid; ``radius_x``, ``radius_y`` : its radii of curvature."""
+
+    radius_x: float
+    radius_y: float
+    load: float
+    friction: float
+    coatings: list[Layer]
+    substrate: Layer
+
+
 class Disc(_Strict):
     """A uniform pressure on a disc around the origin; coatings from the surface down."""
 
@@ -72,7 +83,7 @@ class Square(_Strict):
     substrate: Layer
 
 
-Problem = Sphere | Disc | Square
+Problem = Sphere | Ellipsoid | Disc | Square
 
 
 class LineOfPoints(_Strict):

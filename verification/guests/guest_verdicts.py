@@ -20,7 +20,7 @@ from scipy.ndimage import maximum_filter1d
 
 from verification.guests.case_exam import claims_of, profiles_of
 from verification.guests.doors.program_door import Solved
-from verification.guests.exam_subjects import REFERENCE, Subject
+from verification.guests.exam_subjects import REFERENCE, Subject, reference_of
 from verification.guests.guest_description import Guest
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.array_types import Array
@@ -86,12 +86,13 @@ def judged(guest: Guest, case: Subject, exam: CaseResult, replies: Sequence[Solv
     if last.values and guest.levels:
         found = {key: _with_uncertainty(guest, key, profile, levels) for key, profile in found.items()}
     profiles = {(q, line, guest.name): profile for (q, line), profile in found.items()}
-    profiles |= {(p.quantity, p.line, REFERENCE): p for p in exam.profiles}
+    reference = reference_of(case.problem)
+    profiles |= {(p.quantity, p.line, reference): p for p in exam.profiles}
     seconds = replies[-1].seconds
     memory = max((r.memory for r in replies if r.memory), default=None)
     mine = SourceResult(guest.name, seconds, last.error, _diagnostics(guest, replies, memory))
-    exact = next((s for s in exam.sources if s.source == REFERENCE), SourceResult(REFERENCE, 0.0))
-    outcomes = {guest.name: mine, REFERENCE: exact}
+    exact = next((s for s in exam.sources if s.source == reference), SourceResult(reference, 0.0))
+    outcomes = {guest.name: mine, reference: exact}
     verdicts = []
     for claim in claims_of(case, guest):
         reason = last.unsupported or _at_the_edge(guest, claim, exam)

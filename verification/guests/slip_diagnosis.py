@@ -14,7 +14,7 @@ from scipy.optimize import minimize_scalar
 
 from verification.guests.case_exam import ALONG_SURFACE
 from verification.guests.common_slips import EDGE, EXPLAINED, THOUSANDS, UNITS, Explanation, explanation
-from verification.guests.exam_subjects import REFERENCE
+from verification.guests.exam_subjects import reference_of
 from verification.judging.verdict import Outcome
 from verification.problem.array_types import Array
 from verification.problem.line_profile import Profile
@@ -105,7 +105,9 @@ def slips(result: CaseResult, guest: str) -> list[Slip]:
 
 def _of_place(result: CaseResult, guest: str, quantity: str, line: str) -> str | None:
     """The message about one quantity on one line, or about one number."""
-    mine, exact = (result.profile_of.get((quantity, line, source)) for source in (guest, REFERENCE))
+    mine, exact = (
+        result.profile_of.get((quantity, line, source)) for source in (guest, reference_of(result.problem))
+    )
     if mine is None or exact is None or not np.isfinite(mine.value).all():
         return None
     return _of_number(mine, exact) if line == "contact" else _of_line(mine, exact, result)
@@ -116,7 +118,7 @@ def _expected(result: CaseResult, guest: str, found: Explanation) -> CaseResult:
     profiles = []
     for p in result.profiles:
         mine = result.profile_of.get((p.quantity, p.line, guest))
-        if p.source == REFERENCE and mine is not None:
+        if p.source == reference_of(result.problem) and mine is not None:
             value, _ = found.values[p.quantity, p.line]
             value = np.where(np.isfinite(value), value, mine.value)
             if _norm(mine.value - value) < _norm(mine.value - p.value):
@@ -127,7 +129,7 @@ def _expected(result: CaseResult, guest: str, found: Explanation) -> CaseResult:
 
 def _outside_zone(result: CaseResult, zone: float) -> CaseResult:
     """``result`` without the points that its claims leave out around the contact edge."""
-    a = float(result.profile_of["contact_radius", "contact", REFERENCE].value[0])
+    a = float(result.profile_of["contact_radius", "contact", reference_of(result.problem)].value[0])
     profiles = []
     for p in result.profiles:
         keep = np.abs(np.abs(p.position) - a) >= zone * a
@@ -186,7 +188,7 @@ def _of_line(mine: Profile, exact: Profile, result: CaseResult) -> str | None:
             best = (rest, message)
     if best is not None:
         return best[1]
-    a = float(result.profile_of["contact_radius", "contact", REFERENCE].value[0])
+    a = float(result.profile_of["contact_radius", "contact", reference_of(result.problem)].value[0])
     beside = np.abs(np.abs(x) - a) < EDGE * a
     if mine.line in ALONG_SURFACE and beside.any() and not beside.all():
         inside, outside = np.abs(g - e)[beside].max(), np.abs(g - e)[~beside].max()
@@ -214,7 +216,7 @@ def _candidates(mine: Profile, exact: Profile, result: CaseResult) -> Iterator[C
     yield _of_factor(-1.0, quantity), -e, None
     others = [name for name in STRESSES if name != quantity] if quantity in STRESSES else []
     for other in others:
-        profile = result.profile_of.get((other, line, REFERENCE))
+        profile = result.profile_of.get((other, line, reference_of(result.problem)))
         if profile is not None and _norm(profile.value - e) > FINE * _norm(e):
             axes = set(quantity[-2:]) ^ set(other[-2:])
             cause = f": {' and '.join(sorted(axes))} transposed?" if len(axes) == 2 else ""
@@ -222,7 +224,7 @@ def _candidates(mine: Profile, exact: Profile, result: CaseResult) -> Iterator[C
             yield f"equal to -{other}{cause}", -profile.value, None
     if "side" in line:
         flipped = line.replace("upper", "~").replace("lower", "upper").replace("~", "lower")
-        profile = result.profile_of.get((quantity, flipped, REFERENCE))
+        profile = result.profile_of.get((quantity, flipped, reference_of(result.problem)))
         if profile is not None and _norm(profile.value - e) > FINE * _norm(e):
             yield f"equal to the value on the {flipped}: the other layer?", profile.value, None
     if line != "axis" and x.min(initial=0.0) < 0:
@@ -252,7 +254,7 @@ def _shifted(mine: Profile, exact: Profile, result: CaseResult) -> Iterator[Cand
     g, e, x = mine.value, exact.value, mine.position
     if mine.line == "axis":
         return
-    a = float(result.profile_of["contact_radius", "contact", REFERENCE].value[0])
+    a = float(result.profile_of["contact_radius", "contact", reference_of(result.problem)].value[0])
     # At the edge the slope of the pressure is infinite.
     slope = np.where(np.abs(np.abs(x) - a) > EDGE * a, np.gradient(e, x), 0.0)
     if not slope.any():

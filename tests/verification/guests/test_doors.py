@@ -11,7 +11,7 @@ import pytest
 from quick_case import coatcheck
 
 import verification
-from verification.cases.case_file import read_case, shipped_cases
+from verification.cases.case_file import read_case, shaped_cases, shipped_cases
 from verification.guests.case_exam import claims_of, prepare, question_of
 from verification.guests.doors.ask_guest import answered
 from verification.guests.doors.file_door import pack, read_answer
@@ -19,6 +19,7 @@ from verification.guests.exam_subjects import PLANE, REFERENCE, subject_of
 from verification.guests.guest_description import read_guest
 from verification.guests.guest_protocol import ProtocolError, schema
 from verification.guests.guest_verdicts import judged
+from verification.guests.slip_diagnosis import slips
 from verification.judging.verdict import Outcome
 from verification.problem.quantity import STRESSES
 from verification.running.case_result import SourceResult, from_json
@@ -121,6 +122,31 @@ def check_own(method, name, folder):
     assert differing <= set(surfaces)
     assert {outcomes(function)[key] for key in differing} <= {Outcome.INCONCLUSIVE}
     return function
+
+
+ELLIPTICAL = """
+def solve(radius, load, substrate, indenter, coatings=()):
+    from verification.sources.references.hertz_ellipse import pressed_ellipsoid
+    E, nu = substrate
+    return vars(pressed_ellipsoid(*indenter[1], load, E, {nu}))
+"""
+
+
+def test_an_ellipsoid_is_asked_of_a_guest_that_supports_it_and_judged_by_the_closed_form(tmp_path):
+    case = subject_of(read_case(shaped_cases()["24_ellipse"]))
+    prepare(case, tmp_path / "exam.json")
+    exam = from_json(read_checked(tmp_path / "exam.json"))
+    text = 'name = "own"\nclaim = 1e-6\n{}callable = "{}:solve"\n'
+    assert "ellipsoid" in guest_in(tmp_path, text.format("", "adapter")).refusal(case.problem)
+    for name, nu, outcome in (("right", "nu", Outcome.AGREES), ("wrong", "0.0", Outcome.DISAGREES)):
+        (tmp_path / f"{name}.py").write_text(ELLIPTICAL.format(nu=nu))
+        guest = guest_in(tmp_path, text.format("supports = { ellipsoid = true }\n", name))
+        asked = question_of(case, exam, guest, claims_of(case, guest), {})
+        result = judged(guest, case, exam, answered(guest, case, [asked]))
+        assert {one.source for one in result.sources} == {"own", "hertz"}
+        assert set(outcomes(result)) == {(q, "contact") for q in asked.contact}
+        assert set(outcomes(result).values()) == {outcome}
+        assert isinstance(slips(result, "own"), list)
 
 
 def test_the_semi_analytical_method_gets_the_verdicts_it_has_inside(tmp_path):

@@ -29,6 +29,7 @@ from verification.guests.guest_protocol import (
     VERSION,
     Answer,
     Disc,
+    Ellipsoid,
     Layer,
     LineOfPoints,
     Question,
@@ -257,6 +258,12 @@ def problem_of(question: Question) -> Load:
         return PrescribedLoad(p.pressure, p.load_radius, _layers(p.coatings), substrate)
     if isinstance(p, Square):
         return SquareLoad(p.pressure, p.side, _layers(p.coatings), substrate)
+    if isinstance(p, Ellipsoid):
+        radii = (p.radius_x, p.radius_y)
+        mean = (p.radius_x * p.radius_y) ** 0.5
+        return CoatedContact(
+            mean, p.load, _layers(p.coatings), substrate, p.friction, None, ("ellipsoid", radii)
+        )
     ball = None if p.ball is None else (p.ball.E, p.ball.nu, _layers(p.ball.coatings))
     return CoatedContact(p.radius, p.load, _layers(p.coatings), substrate, p.friction, ball)
 
