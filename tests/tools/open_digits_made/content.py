@@ -8,7 +8,7 @@ from math import ceil, floor, log10
 from typing import Any
 
 from open_digits_made.problems import VectorProblem
-from open_digits_made.values import Row
+from open_digits_made.row import Row
 from open_digits_made.vector_schema import LICENCE, VERSION, VectorSet
 from verification.guests.vectors.open_digits import csv_texts
 from verification.problem.coated_contact import CoatedContact
@@ -23,8 +23,9 @@ CONVENTIONS = {
     "axes": "origin at first contact, x along sliding, z into the solid, surface z = 0; all points at y = 0",
     "signs": "stress positive in tension, pressure and load in compression; on the surface sigma_zz = -p and "
     "sigma_xz = -friction p",
-    "problem": "rigid parabolic sphere, or uniform pressure on a disc; coatings from the surface down, "
-    "bonded; friction does not change the pressure",
+    "problem": "rigid parabolic sphere, rigid ellipsoid with radii of curvature along x and y, or uniform "
+    "pressure on a disc; coatings from the surface down, bonded; friction does not change the pressure",
+    "contact_radius": "of an ellipse that of the disc of its area, sqrt(half_axis_x half_axis_y)",
     "layer": "0 is the first below the surface; on an interface it picks the side",
     "approach": "of the sphere; of a disc u_z at the origin, positive into the solid",
 }
@@ -55,15 +56,21 @@ def vector(problem: VectorProblem, rows: Sequence[Row]) -> dict[str, Any]:
     }
 
 
-CONTACT = ("contact_radius", "approach", "peak_pressure")
+CONTACT = ("contact_radius", "approach", "peak_pressure", "half_axis_x", "half_axis_y")
 
 
 def _entry(problem: VectorProblem) -> dict[str, Any]:
     given = problem.problem
-    load = ("radius", "load") if isinstance(given, CoatedContact) else ("pressure", "load_radius")
+    if isinstance(given, CoatedContact):
+        shape = {"radius": given.radius}
+        if given.indenter is not None:
+            shape = dict(zip(("radius_x", "radius_y"), given.indenter[1], strict=True))
+        loaded = shape | {"load": given.load}
+    else:
+        loaded = {"pressure": given.pressure, "load_radius": given.load_radius}
     E, nu = given.substrate
     return {
-        **{name: getattr(given, name) for name in load},
+        **loaded,
         "friction": given.friction,
         "coatings": [{"E": E1, "nu": nu1, "thickness": h} for E1, nu1, h in given.coatings],
         "substrate": {"E": E, "nu": nu},

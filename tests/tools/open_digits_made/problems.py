@@ -13,6 +13,8 @@ SEED = 17
 RATIOS, SLIDING = (0.1, 0.25, 0.5, 2.0, 4.0, 10.0), (0.0, 0.25)
 # Of the random problems: E_i/E of the substrate, h_i/a_h, Poisson's ratio, friction.
 RATIO, THICKNESS, POISSON, FRICTION = (0.05, 20.0), (0.05, 3.0), (0.0, 0.495), (0.05, 0.6)
+ELLIPSES = "hertz_ellipse"  # the group, whose problems both methods check
+CURVED = (1.25, 2.0, 4.0, 8.0, 16.0)  # ratios of the radii: half-axes to 6.5 : 1
 EACH = 75  # random problems for each number of coatings from two to five
 
 
@@ -37,6 +39,7 @@ def problems() -> list[VectorProblem]:
         ("nearly_incompressible", _nearly_incompressible()),
         ("layers", _layers()),
         ("disc", _discs()),
+        (ELLIPSES, _ellipses()),
     )
     for group, drawn in groups:
         found += [VectorProblem(f"{group}_{n:03d}", group, one) for n, one in enumerate(drawn, start=1)]
@@ -110,6 +113,15 @@ def _layers() -> Iterator[CoatedContact]:
             a_h = radius * log_uniform(random, (3e-3, 3e-2))
             load = rounded(4 * a_h**3 * E / (1 - substrate[1] ** 2) / (3 * radius))
             yield _contact(coatings, friction, substrate, radius=radius, load=load)
+
+
+def _ellipses() -> Iterator[CoatedContact]:
+    """Either axis the longer one; radius_x or radius_y is 10 mm."""
+    for number, ratio in enumerate(CURVED):
+        nu = (0.0, 0.2, 0.3, 0.4, 0.49)[number]
+        for radii in ((0.01, rounded(0.01 / ratio)), (rounded(0.01 / ratio), 0.01)):
+            mean = (radii[0] * radii[1]) ** 0.5
+            yield CoatedContact(mean, 20.0, (), (210e9, nu), indenter=("ellipsoid", radii))
 
 
 def _discs() -> Iterator[PrescribedLoad]:

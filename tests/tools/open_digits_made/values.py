@@ -1,12 +1,12 @@
 """Values of the open digits at the points of each problem, by the exact reference or a method."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from open_digits_made.problems import rounded
+from open_digits_made import ellipses
+from open_digits_made.row import DEPTH, INSIDE, Row, places
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad, stress_with_uncertainty
 from verification.problem.quantity import IN_PLANE
@@ -14,30 +14,15 @@ from verification.sources.exact_sources import solve_exactly
 
 Problem = CoatedContact | PrescribedLoad
 # Positions over the contact radius, or over the radius of the disc.
-INSIDE = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99)
 SURFACE = (0.0, 0.25, 0.5, 0.75, 0.9, 1.1, 1.25, 1.5, 2.0, 3.0)
-DEPTH = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0)
 BESIDE = (0.0, 0.5, 1.0, 1.5)
 SCALARS = ("contact_radius", "approach", "peak_pressure")
 
 
-@dataclass(frozen=True, eq=False)
-class Row:
-    """``value`` [SI] of ``quantity`` at points of the plane y = 0, with its ``uncertainty``.
-
-    layer : of each point, which picks the side of an interface.   A number of the contact is at x = z = 0.
-    """
-
-    quantity: str
-    x: Array
-    z: Array
-    layer: int
-    value: Array
-    uncertainty: Array
-
-
 def exact_rows(problem: Problem) -> list[Row]:
     """Every value of ``problem`` by the exact reference, each with its uncertainty."""
+    if isinstance(problem, CoatedContact) and problem.indenter is not None:
+        return list(ellipses.rows(problem))
     solution = solve_exactly(problem)
     return list(rows_of(solution, problem, float(solution.contact_radius)))
 
@@ -51,18 +36,18 @@ def rows_of(solution: Any, problem: Problem, a: float) -> Iterator[Row]:
         value, U = np.array([getattr(solution, name)]), np.array([getattr(stated, name)])
         yield Row(name, zero, zero, 0, value, U)
     if isinstance(problem, CoatedContact):
-        x = _places(INSIDE, a, sliding=False)
+        x = places(INSIDE, a)
         yield Row("pressure", x, 0 * x, 0, solution.pressure(x), solution.pressure_uncertainty(x))
-    x = _places(SURFACE, a, sliding=sliding)
+    x = places(SURFACE, a, sliding=sliding)
     yield from _stresses(solution, x, 0 * x, 0, ("sigma_xx", "sigma_yy"))
-    z = _places(DEPTH, a, sliding=False)
+    z = places(DEPTH, a)
     bounds = np.cumsum([h for _, _, h in problem.coatings])
     layers = np.searchsorted(bounds, z)
     for layer in sorted(set(layers.tolist())):
         here = z[layers == layer]
         names = ("sigma_xx", "sigma_zz", *(("sigma_xz",) if sliding else ()))
         yield from _stresses(solution, 0 * here, here, layer, names)
-    x = _places(BESIDE, a, sliding=sliding)
+    x = places(BESIDE, a, sliding=sliding)
     for k, depth in enumerate(bounds.tolist()):
         for layer in (k, k + 1):
             yield from _stresses(solution, x, np.full_like(x, depth), layer, tuple(IN_PLANE))
@@ -75,21 +60,23 @@ def _stresses(solution: Any, x: Array, z: Array, layer: int, names: tuple[str, .
         yield Row(name, x, z, layer, sigma[IN_PLANE[name]], U[IN_PLANE[name]])
 
 
-def _places(multiples: tuple[float, ...], a: float, *, sliding: bool) -> Array:
-    places = [rounded(m * a) for m in multiples]
-    return np.array(([-x for x in places[:0:-1]] if sliding else []) + places)
-
-
 def compared(rows: list[Row], problem: Problem, solve: Callable[..., Any]) -> tuple[int, int, float]:
     """Values compared with a method, how many are within the uncertainty of both, the largest share of it."""
     solution = solve(problem, {})
-    a = next((float(row.value[0]) for row in rows if row.quantity == "contact_radius"), None)
-    own = list(rows_of(solution, problem, a or float(solution.contact_radius)))
+    if isinstance(problem, CoatedContact) and problem.indenter is not None:
+        own = [ellipses.by_method(solution, row) for row in rows]
+    else:
+        a = next((float(row.value[0]) for row in rows if row.quantity == "contact_radius"), None)
+        sampled = rows_of(solution, problem, a or float(solution.contact_radius))
+        own = [(row.value, row.uncertainty) for row in sampled]
     count = within = 0
     largest = 0.0
     for exact, other in zip(rows, own, strict=True):
-        share = np.abs(exact.value - other.value) / np.maximum(exact.uncertainty + other.uncertainty, 1e-300)
-        share = np.where(exact.value == other.value, 0.0, share)
+        if other is None:
+            continue
+        value, U = other
+        share = np.abs(exact.value - value) / np.maximum(exact.uncertainty + U, 1e-300)
+        share = np.where(exact.value == value, 0.0, share)
         count, within = count + share.size, within + int((share <= 1).sum())
         largest = max(largest, float(share.max()))
     return count, within, largest

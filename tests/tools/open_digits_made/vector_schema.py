@@ -21,9 +21,11 @@ class Material(_Strict):
 
 
 class Entry(_Strict):
-    """The problem: radius [m] and load [N] of a sphere, or pressure [Pa] on a disc of load_radius [m]."""
+    """Radius [m] and load [N] of a sphere, radii and load of an ellipsoid, or pressure [Pa] on a disc."""
 
     radius: float | None = None
+    radius_x: float | None = None
+    radius_y: float | None = None
     load: float | None = None
     pressure: float | None = None
     load_radius: float | None = None

@@ -20,7 +20,8 @@ def csv_texts(vectors: Sequence[dict[str, Any]]) -> dict[str, str]:
     """The same content as ``problems.csv`` and ``values.csv``."""
     most = max(len(v["problem"]["coatings"]) for v in vectors)
     layers = [name for k in range(1, most + 1) for name in (f"E{k} [Pa]", f"nu{k}", f"thickness{k} [m]")]
-    heads = {"radius": "m", "load": "N", "pressure": "Pa", "load_radius": "m", "friction": ""}
+    heads = {"radius": "m", "radius_x": "m", "radius_y": "m", "load": "N"}
+    heads |= {"pressure": "Pa", "load_radius": "m", "friction": ""}
     named = [f"{name} [{unit}]" if unit else name for name, unit in heads.items()]
     problems: list[list[Any]] = [["name", "group", *named, "E [Pa]", "nu", *layers]]
     values: list[list[Any]] = [
@@ -38,7 +39,8 @@ def csv_texts(vectors: Sequence[dict[str, Any]]) -> dict[str, str]:
         for coating in p["coatings"]:
             row += [coating["E"], coating["nu"], coating["thickness"]]
         problems.append(row + [""] * (len(problems[0]) - len(row)))
-        values += [[v["name"], q, unit_of(q), 0.0, 0.0, 0, *found] for q, found in v["contact"].items()]
+        units = {q: "m" if q.startswith("half_axis") else unit_of(q) for q in v["contact"]}
+        values += [[v["name"], q, units[q], 0.0, 0.0, 0, *found] for q, found in v["contact"].items()]
         for points in v["points"]:
             for q, found in points["values"].items():
                 places = zip(points["x"], points["z"], found, points["uncertainty"][q], strict=True)
