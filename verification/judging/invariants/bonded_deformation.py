@@ -20,6 +20,8 @@ RADII = np.array([0.0, 0.5, 0.9, 1.4])
 ANGLE = 0.35
 # Of the thinner neighbour; a tenth of a per cent curves a displacement by 1e-6 of its change in the layer.
 STEP = 1e-3
+# Of the approach, over the contact radius: strain by what an evaluation leaves of a displacement in a layer.
+EVALUATED = 2e-8
 
 
 def bonded_traction(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
@@ -60,8 +62,8 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
 def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, stencil: Stencil) -> Invariant:
     """E eps_ij = (1 + nu) sigma_ij - nu sigma_kk delta_ij in ``layer``, strains by differences of u.
 
-    Bounded by the error of the differences plus twice the uncertainty of the stresses, once for the stresses
-    and once, over E, for the strains.
+    Bounded by the error of the differences and of the evaluation of displacements, plus twice the uncertainty
+    of the stresses, once for the stresses and once, over E, for the strains.
     """
     x, y, z = stencil.points
     E, nu = ([c[:2] for c in problem.coatings] + [problem.substrate])[layer]
@@ -75,7 +77,7 @@ def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, s
     bound = None
     if U is not None:
         # the estimate of a single component may vanish by chance
-        error = error.max(axis=(0, 1))
+        error = error.max(axis=(0, 1)) + EVALUATED * solution.approach / solution.contact_radius
         bound = (E * error + 2 * (1 + nu) * U + 2 * abs(nu) * unit * np.trace(U)) / problem.p_h
     name = layer_name(layer, problem)
     law = f"E eps = (1 + nu) sigma - nu tr sigma in {name}, over p_h"
