@@ -217,6 +217,15 @@ def test_uncertainty_of_the_default_brackets_hertz():
     assert np.all(np.abs(zz) <= s.stress_uncertainty(0.0, 0.0, z)[2, 2])
 
 
+@pytest.mark.parametrize(("ratio", "h"), [(4.0, 0.05), (0.25, 0.2), (10.0, 0.2)])
+def test_a_thin_film_on_few_patches_states_how_little_is_resolved(ratio, h):
+    coatings = ((ratio * E, 0.25, h * A_H),)
+    exact = integral_equation.solve(radius=R, load=W, coatings=coatings, substrate=STEEL)
+    s = solve(coatings, patches=33, estimate_uncertainty=True)
+    for name in ("contact_radius", "approach", "peak_pressure"):
+        assert abs(getattr(s, name) - getattr(exact, name)) <= getattr(s.uncertainty, name), name
+
+
 def test_uncertainty_not_estimated_is_refused():
     s = solve(patches=65)
     assert s.uncertainty is None

@@ -175,6 +175,20 @@ def lobes(x, y):
     return (x**2 + y**2) / 0.02 + 5e4 * (x**3 - 3 * x * y**2)
 
 
+def test_a_shape_that_the_coarsest_grid_does_not_resolve_is_found_on_the_next_one():
+    # a stiff film of a seventh of the short half-axis, which is 17 patches on the coarsest grid
+    given = {
+        "radius": 8.4e-3,
+        "indenter": ("ellipsoid", (20e-3, 3.526e-3)),
+        "load": 20.0,
+        "coatings": ((611e9, 0.32, 6.3e-6),),
+        "substrate": (210e9, 0.3),
+    }
+    found = semianalytic.solve(**given)
+    finer = semianalytic.solve(**given, patches=513, estimate_uncertainty=False)
+    assert found.contact_radius == pytest.approx(finer.contact_radius, rel=2e-4)  # 4e-3 by its rim alone
+
+
 def test_pressure_and_stress_end_with_a_contact_of_lobes():
     """Its contour is no ellipse; far away the field is that of a point force."""
     W, a = 20.0, 8.66e-5
