@@ -8,7 +8,7 @@ from math import ceil, floor, log10
 from typing import Any
 
 from open_digits_made.problems import VectorProblem
-from open_digits_made.row import Row
+from open_digits_made.row import SCALARS, Row
 from open_digits_made.vector_schema import LICENCE, VERSION, VectorSet
 from verification.guests.vectors.open_digits import csv_texts
 from verification.problem.coated_contact import CoatedContact
@@ -56,7 +56,7 @@ def vector(problem: VectorProblem, rows: Sequence[Row]) -> dict[str, Any]:
     }
 
 
-CONTACT = ("contact_radius", "approach", "peak_pressure", "half_axis_x", "half_axis_y")
+CONTACT = (*SCALARS, "half_axis_x", "half_axis_y")
 
 
 def _entry(problem: VectorProblem) -> dict[str, Any]:

@@ -20,13 +20,12 @@ from typing import Any
 import numpy as np
 from scipy.special import ellipeinc, ellipkinc
 
-from open_digits_made.row import DEPTH, INSIDE, Row, places
+from open_digits_made.row import DEPTH, INSIDE, SCALARS, Row, places
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact
 from verification.sources.references.hertz_ellipse import PressedEllipsoid, pressed_ellipsoid
 
 ROUNDING = 1e-12  # relative, of the closed forms
-SCALARS = ("contact_radius", "approach", "peak_pressure")
 AXIS = ("sigma_xx", "sigma_yy", "sigma_zz")
 
 

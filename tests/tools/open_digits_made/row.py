@@ -7,6 +7,7 @@ import numpy as np
 from open_digits_made.problems import rounded
 from verification.problem.array_types import Array
 
+SCALARS = ("contact_radius", "approach", "peak_pressure")
 # Positions over the contact radius, or over the radius of the disc.
 INSIDE = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99)
 DEPTH = (0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 3.0)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from open_digits_made import ellipses
-from open_digits_made.row import DEPTH, INSIDE, Row, places
+from open_digits_made.row import DEPTH, INSIDE, SCALARS, Row, places
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad, stress_with_uncertainty
 from verification.problem.quantity import IN_PLANE
@@ -16,7 +16,6 @@ Problem = CoatedContact | PrescribedLoad
 # Positions over the contact radius, or over the radius of the disc.
 SURFACE = (0.0, 0.25, 0.5, 0.75, 0.9, 1.1, 1.25, 1.5, 2.0, 3.0)
 BESIDE = (0.0, 0.5, 1.0, 1.5)
-SCALARS = ("contact_radius", "approach", "peak_pressure")
 
 
 def exact_rows(problem: Problem) -> list[Row]:

@@ -2,12 +2,13 @@
 
 import datetime
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 
 from rich.markup import escape
 
 from verification.cases.case_file import Case, parse_case
-from verification.cases.random_problems import draw, draw_ellipse
+from verification.cases.random_problems import Draw, draw, draw_ellipse
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import RECORDS, require_checkout
@@ -82,7 +83,8 @@ def alarms(
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):
-        cases = [_case(seed, number, kind, output) for number in range(count)]
+        chosen = draw_ellipse if ellipses else partial(draw, films=films)
+        cases = [_case(chosen(seed, number), output) for number in range(count)]
         kept = kept_results(cases, output) if resume else {}
         tasks = [case_task(case, output) for case in cases if case.name not in kept]
         solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
@@ -99,8 +101,7 @@ def alarms(
     return exit_code(results)
 
 
-def _case(seed: int, number: int, kind: str, output: Path) -> Case:
-    drawn = draw_ellipse(seed, number) if kind == "--ellipses" else draw(seed, number, kind == "--films")
+def _case(drawn: Draw, output: Path) -> Case:
     path = output / "problems" / f"{drawn.name}.toml"
     write_atomically(path, drawn.text)
     return parse_case(drawn.text.encode(), path)
