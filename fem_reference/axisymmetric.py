@@ -248,8 +248,7 @@ class Skeleton:
     extension: np.ndarray
 
     def extended(self, u: np.ndarray) -> np.ndarray:
-        """The field vectors ``u``, (n,) or (n, columns), with their values inside the triangles."""
-        u = u.copy()
+        """The field vectors ``u``, (n,) or (n, columns), given their values inside the triangles in place."""
         u[self.inner] = np.einsum("mio,mo...->mi...", self.extension, u[self.outer], optimize=True)
         return u
 

@@ -188,16 +188,18 @@ def _superposed(
 
     respond : field vectors (n, columns) of a solution, by number, under loads (.., nodes, columns)
     """
+    weights = {m: dict(_weights(solved, m)) for m in loads}
+    between = [m for m in loads if m not in solved]
     found: dict[int, np.ndarray] = {}
-    weights = {m: _weights(solved, m) for m in loads}
-    for k in range(len(solved)):
-        shares = [(m, w) for m in loads for j, w in weights[m] if j == k]
-        if not shares:
-            continue
-        columns = np.stack([w * loads[m] for m, w in shares], axis=-1)
-        for (m, _), u in zip(shares, respond(k, columns).T, strict=True):
-            found[m] = found[m] + u if m in found else u
-    return found
+    total: np.ndarray | float = 0.0
+    for k, one in enumerate(solved):
+        direct = [m for m in loads if m == one]
+        wanted = direct + (between if one >= DIRECT else [])
+        if wanted:
+            u = respond(k, np.stack([weights[m][k] * loads[m] for m in wanted], axis=-1))
+            found |= {m: u[:, j] for j, m in enumerate(direct)}
+            total = total + u[:, len(direct) :] if one >= DIRECT else total
+    return found | dict(zip(between, np.transpose(total), strict=False))
 
 
 @dataclass(frozen=True, eq=False)
@@ -232,7 +234,6 @@ class Meridian:
         far, count = d.locations[:, d.outer], 2 if m == 0 else 3
         normal, radial, angular = loads / (2 * np.pi if m == 0 else np.pi)
         load = np.zeros((count * d.N, loads.shape[-1]))
-        given = np.zeros_like(load)
         load[(count - 1) * d.N + d.contact] = normal
         load[d.contact] = radial
         outside: list[tuple[np.ndarray, np.ndarray]] = []
@@ -244,6 +245,7 @@ class Meridian:
         if m == 1:
             Q = (loads[1] - loads[2]).sum(axis=0)
             outside = [(u, Q) for u in self.solid.far_fields(1, 1.0, far)]
+        given = np.zeros_like(load) if outside else None
         for field, (u, resultant) in enumerate(outside):
             given[field * d.N + d.outer] = u[:, None] * resultant
-        return self.skeleton.extended(self.factor.solve(given, load))
+        return self.skeleton.extended(self.factor.solve(load, given))

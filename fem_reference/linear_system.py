@@ -114,11 +114,12 @@ class ConstrainedFactor:
         A, _, _, free = condense(K, np.zeros(K.shape[0]), D=fixed)
         return cls(factorised(A.tocsc()), free, fixed, K[:, fixed].tocsr()[free])
 
-    def solve(self, given: np.ndarray, load: np.ndarray) -> np.ndarray:
-        """u of K u = load with u = ``given`` at the unknowns ``fixed``, (n, columns) each.
+    def solve(self, load: np.ndarray, given: np.ndarray | None = None) -> np.ndarray:
+        """u of K u = load with u = ``given``, or 0, at the unknowns ``fixed``, (n, columns) each.
 
         To the rounding of the factor: displacements are read, not forces.
         """
-        u = given.copy()
-        u[self.free] = self.factor(load[self.free] - self.beside @ given[self.fixed])
+        u = np.zeros_like(load) if given is None else given.copy()
+        force = load[self.free] if given is None else load[self.free] - self.beside @ given[self.fixed]
+        u[self.free] = self.factor(force)
         return u

@@ -55,6 +55,11 @@ class LocatedPoints:
         return values
 
     @cached_property
+    def unknowns(self) -> np.ndarray:
+        """Numbers of the unknowns (of one field) of the triangles, (functions, n)."""
+        return np.asarray(self.locator.basis.element_dofs)[:, self.cells]
+
+    @cached_property
     def interfaces(self) -> "list[tuple[int, np.ndarray, list[LocatedPoints]]]":
         """Of each interface with points: the layer above, the points' numbers, the points on either side."""
         found = []

@@ -193,9 +193,8 @@ def _triangulate(
         fan = f"{_literal(grading.edge_rate)}*{rho}^{_literal(_FAN)}"
         origin = f"Sqrt((x-({_literal(xi[0])}))^2+y*y)"
         distant = _literal(grading.far_size)
-        if (
-            grading.surface
-        ):  # fine below the pressure alone; all along the axis, where r dr holds fields least
+        if grading.surface:
+            # fine below the pressure alone; all along the axis, where r dr holds fields least
             origin = f"(x-({_literal(xi[0])}))"
             distant = f"{distant}*(1+0.2*Max(0,{rho}-{_literal(bare)}))"
         sizes = [

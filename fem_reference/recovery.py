@@ -106,10 +106,9 @@ class HarmonicField:
 
     def _fields_and_strains(self, at: LocatedPoints) -> tuple[np.ndarray, np.ndarray]:
         """Fields (fields, n) and strains (strains, n)."""
-        d = self.discretisation
-        u = self.fields.reshape(-1, d.N)[:, np.asarray(d.basis.element_dofs)[:, at.cells]]
+        u = self.fields.reshape(-1, self.discretisation.N)[:, at.unknowns]
         values, d_r, d_z = np.einsum("fin,kin->kfn", u, at.shapes)
-        A_r, A_z, A_0 = strain_operator(self.harmonic)
+        A_r, A_z, A_0 = self._operator
         return values, A_r @ d_r + A_z @ d_z + A_0 @ (values / at.r)
 
     @cached_property
@@ -162,18 +161,24 @@ class HarmonicField:
 
     def _hooke(self, strain: np.ndarray, layer: np.ndarray) -> np.ndarray:
         """Stress (6, n) of the strains of ``_fields_and_strains``."""
-        D = np.stack([elasticity(E, nu, self.harmonic) for E, nu in self.materials])[layer]
         stress = np.zeros((6, layer.size))
-        stress[: strain.shape[0]] = np.einsum("nst,tn->sn", D, strain)
+        stress[: strain.shape[0]] = np.einsum("stn,tn->sn", self._elasticity[:, :, layer], strain)
         return stress
+
+    @cached_property
+    def _operator(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        return strain_operator(self.harmonic)
+
+    @cached_property
+    def _elasticity(self) -> np.ndarray:
+        """(strains, strains, layers)."""
+        return np.stack([elasticity(E, nu, self.harmonic) for E, nu in self.materials], axis=-1)
 
     def _surface_tractions(self, r: np.ndarray) -> np.ndarray:
         """(sigma_zz, sigma_rz, sigma_tz) on the surface, shape (3, n)."""
-        traction, zero = self.factor * self.pressure(r), np.zeros(r.size)
-        if self.harmonic == 0:
-            return np.stack([traction, zero, zero])
         # q in +x: q_r = q cos, q_theta = -q sin on the solid, whose outward normal is -z
-        return np.stack([zero, traction, -traction])
+        shares = np.array([0.0, 1.0, -1.0] if self.harmonic else [1.0, 0.0, 0.0])
+        return np.multiply.outer(shares, self.factor * self.pressure(r))
 
     def _on_plane(self, layer: int, strain: np.ndarray, tractions: np.ndarray) -> np.ndarray:
         """Stress (6, n) on a plane z = const from the in-plane strains and the tractions on it."""

@@ -30,10 +30,8 @@ QUALITIES = {"fast": (0.5, 0.09, 120), "default": (0.38, 0.05, 240), "fine": (0.
 STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish
 WAVES = 4e-5  # of the peak, by short waves of the pressure given: 5e-5 in one of 30 ellipses, on both meshes
 SAFETY = 2.0  # of the change from the companion
-AXIS = (
-    2.25,
-    0.15,
-)  # times as much on the axis, where integrals in r dr hold the fields least; so far around it
+# times as much on the axis, where integrals in r dr hold the fields least; so far around it
+AXIS = 2.25, 0.15
 COARSER = 1.3  # triangles of the companion over those of the mesh
 CORRECTING = 96  # of the harmonics, that correct the pressure
 FEWER = 0.7  # of these, for the change by what is beyond them
@@ -194,7 +192,8 @@ def solve_shape(
     if indenter[0] == "asperities":
         widest += indenter[1][0]
     pressure = StarPressure.of(start, fold, widest)
-    reach = MARGIN * pressure.farthest
+    # six digits, lest the mesh follow the rounding of the pressure given
+    reach = float(f"{MARGIN * pressure.farthest:.6g}")
     unit = Units(length=reach, pressure=E, modulus=E)
     solid = LayeredSolid.scaled(coatings, substrate, reach, far, E)
     check_proportions(solid.thicknesses, "the contact's extent")

@@ -280,9 +280,8 @@ def corrected(
         )
     at = pressure.quadrature(vertices, compliance.last)
     forces = at.weights * pressure(at.x, at.y)
-    loads = compliance.nodal_loads(at.r, at.theta, forces.reshape(1, *at.theta.shape), compliance.last)[
-        ..., 0
-    ]
+    of_all = compliance.nodal_loads(at.r, at.theta, forces.reshape(1, *at.theta.shape), compliance.last)
+    loads = of_all[..., 0]
     gap = compliance.deflection(loads, at.r, at.theta).ravel() + height(at.x, at.y) - x[-1]
     residual = float(np.sqrt((forces * gap**2).sum() / forces.sum()) / x[-1])
     return Corrected(pressure, loads, float(x[-1]), residual, step, size < CLOSE)

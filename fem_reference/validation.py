@@ -74,15 +74,11 @@ def check_ball(ball: tuple[float, float, Sequence[tuple[float, float, float]]]) 
 def check_proportions(thicknesses: Sequence[float], unit: str, of: str = "") -> None:
     """Raise ValueError for coatings too thin or too thick to mesh beside a contact of radius 1 ``unit``."""
     for k, h in enumerate(thicknesses, start=1):
-        if h < MIN_THICKNESS:
+        if not MIN_THICKNESS <= h <= MAX_THICKNESS:
+            what = "leave it out" if h < MIN_THICKNESS else "use its material for the substrate"
             raise ValueError(
-                f"thickness of {of}coating {k} is {h:.3g} {unit}, too thin to change any stress; leave it "
-                f"out, or keep it above {MIN_THICKNESS:g} {unit}"
-            )
-        if h > MAX_THICKNESS:
-            raise ValueError(
-                f"thickness of {of}coating {k} is {h:.3g} {unit}; use its material for the substrate "
-                f"instead, or keep it below {MAX_THICKNESS:g} {unit}"
+                f"thickness of {of}coating {k} is {h:.3g} {unit}; {what}, or keep it between "
+                f"{MIN_THICKNESS:g} and {MAX_THICKNESS:g} {unit}"
             )
 
 

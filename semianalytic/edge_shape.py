@@ -119,12 +119,13 @@ class Shape:
         t: Array = 1 - u * u - v * v
         if not self.contour.any():
             return t
-        power = np.zeros(max(map(abs, self.harmonics)) + 1, dtype=complex)
+        fold = math.gcd(*self.harmonics)
+        power = np.zeros(max(map(abs, self.harmonics)) // fold + 1, dtype=complex)
         for n, c in zip(self.harmonics, self.contour, strict=True):
-            power[abs(n)] += c if n >= 0 else -1j * c
-        w = u + 1j * v
-        t = t + 2 * np.polynomial.polynomial.polyval(w, power[:3]).real
-        return np.where(t > FAR, t + 2 * (w**3 * np.polynomial.polynomial.polyval(w, power[3:])).real, t)
+            power[abs(n) // fold] += c if n >= 0 else -1j * c
+        low, w = 2 // fold + 1, (u + 1j * v) ** fold
+        t = t + 2 * np.polynomial.polynomial.polyval(w, power[:low]).real
+        return np.where(t > FAR, t + 2 * (w**low * np.polynomial.polynomial.polyval(w, power[low:])).real, t)
 
     def polynomials(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array, Array]:
         """t, s^2 and H_n, (k,) + points, at x, y [m], broadcast."""
@@ -173,10 +174,8 @@ class Shape:
 
     def _smooth(self, t: Array, H: Array) -> Array:
         """q [Pa]."""
-        total, tau = np.zeros(t.shape), self._argument(t)
-        for h, b in zip(H, self.coefficients.T, strict=True):
-            total += h * legendre.legval(tau, b)
-        return total
+        P = legendre.legvander(self._argument(t), len(self.coefficients) - 1)
+        return np.asarray(np.einsum("...k,k...->...", P @ self.coefficients, H))
 
     def columns(self, x: Array, y: Array, blunt: float) -> Array:
         """df/db, then df/dc, ((M + 1) k,) + points; 0 outside.  blunt : t below which 1/sqrt(t) is

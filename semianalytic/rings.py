@@ -230,7 +230,7 @@ class SmoothContour:
             return self.shape.inside(u, y[ring][shift] + rho[ring][shift] * np.sin(phi))
 
         everywhere = np.arange(rho.size)
-        sampled = t(everywhere, np.broadcast_to(2 * np.pi * np.arange(RING) / RING, (rho.size, RING)))
+        sampled = t(everywhere, 2 * np.pi * np.arange(RING)[None] / RING)
         ring, low, high, curvature = _segments(sampled, t)
         t_low, t_high = t(ring, low), t(ring, high)
         kept = t_high > 0
