@@ -31,7 +31,9 @@ _NEAR, _GROWTH = 2.0, 0.6
 # coating over the usual one.
 _LEAST_ROW = 0.25
 # Growth of triangles below an evenly divided surface, and beyond the contact, a unit of the stretched plane.
-_BELOW, _BEYOND = 0.3, 0.5
+_BELOW, _BEYOND = 0.2, 0.5
+# The size at an edge on such a surface, and its growth with the distance, times the size elsewhere.
+_LEAST, _RATE = 1 / 10, 32.0
 # The largest sizes at the edge, far away and in coatings. A film of one row of triangles as high as the last
 # makes the contact too stiff by up to 1e-5.
 _LARGEST_AT_EDGE, _LARGEST_FAR, _LARGEST_IN_FILM = 0.6, 0.7, 0.47
@@ -51,6 +53,7 @@ class Grading:
     rows      : triangles across each coating at least, near the contact; fewer where they would be smaller
         than ``_LEAST_ROW`` times size
     surface   : size on the surface of the contact over its radius, growing below it; 0 for none of its own
+    edges     : radii over the contact's at which the pressure has a root, smaller triangles around each
     """
 
     size: float = 0.4
@@ -61,6 +64,7 @@ class Grading:
     film_size: float = 0.8
     rows: float = 2.0
     surface: float = 0.0
+    edges: tuple[float, ...] = ()
 
     @classmethod
     def of(cls, size: float, edge_size: float = EDGE_SIZE, rows: float = 2.6) -> "Grading":
@@ -76,6 +80,11 @@ class Grading:
             far_size=min(self.far_size, _LARGEST_FAR * share),
             film_size=min(self.film_size, _LARGEST_IN_FILM * share),
         )
+
+
+def surface_size(size: float, distance: np.ndarray | float) -> np.ndarray:
+    """Of triangles of a surface of that ``size`` at a ``distance`` from one of its edges."""
+    return np.clip(_RATE * size * np.asarray(distance), _LEAST * size, size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,9 +184,10 @@ def _triangulate(
         axis = [geo.addPoint(xi[0], level, 0) for level in zeta]
         far = [geo.addPoint(xi[2], level, 0) for level in zeta]
         edge = geo.addPoint(xi[1], 0, 0)
+        inner = [geo.addPoint(np.arcsinh((r - 1) * scale), 0, 0) for r in sorted(grading.edges)]
         down_axis = [geo.addLine(p, q) for p, q in pairwise(axis)]
         down_far = [geo.addLine(p, q) for p, q in pairwise(far)]
-        across = [[geo.addLine(axis[0], edge), geo.addLine(edge, far[0])]]
+        across = [[geo.addLine(p, q) for p, q in pairwise([axis[0], *inner, edge, far[0]])]]
         across += [[geo.addLine(p, q)] for p, q in zip(axis[1:], far[1:], strict=True)]
         layers = []
         for k in range(len(zeta) - 1):
@@ -206,6 +216,10 @@ def _triangulate(
         if grading.surface:  # dr = l cosh(xi) dxi
             even = f"({_literal(grading.surface * scale)}+{_literal(_BELOW)}*y)/Cosh(Min(x,0))"
             sizes.append(f"{even}+{_literal(_BEYOND)}*Max(0,x)")
+            least, rate = _literal(_LEAST * grading.surface * scale), _literal(_RATE * grading.surface)
+            for r in grading.edges:
+                away = f"Sqrt((Sinh(x)+{_literal((1 - r) * scale)})^2+Sinh(y)^2)"
+                sizes.append(f"Max({least},{rate}*{away})/Cosh(Min(x,0))")
         for upper, lower in films:
             away = f"Max(0,Max(y-({_literal(lower)}),{_literal(upper)}-y))"
             row = max((lower - upper) / grading.rows, _LEAST_ROW * grading.size)

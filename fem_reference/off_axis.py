@@ -16,9 +16,9 @@ import numpy as np
 
 from .axisymmetric import Discretisation
 from .harmonic_compliance import DENSITY, HarmonicCompliance, harmonic_compliance
-from .location import SolidPoints, solid_points
-from .mesh import Grading, MeridianMesh, meridian_mesh
-from .recovery import HarmonicField
+from .location import LocatedPoints, SolidPoints, solid_points
+from .mesh import Grading, MeridianMesh, meridian_mesh, surface_size
+from .recovery import HarmonicField, stress_of
 from .scaling import Coatings, LayeredSolid, Units
 from .solution import cartesian, tensor
 from .validation import check_choice, check_materials, check_positive, check_proportions
@@ -35,6 +35,10 @@ NEGLIGIBLE = 1e-9  # of the largest: a harmonic of the pressure below is left ou
 # What lies beyond the last harmonic, over what the last third of them adds: of the deflection, whose terms
 # fall as m^-5/2, of the stress, m^-3/2, and alternate in sign but at the edge.
 BEYOND = 0.5, 1.0
+FULL = 0.4  # of the harmonics count in full in a stress, those beyond ever less
+# Distances from an edge, over the triangles there, between which the series beside it is fitted; its powers
+# 1/2, 1, .. d^(n/2), and as many to see what they miss.
+BESIDE, POWERS = (1.0, 20.0), (3, 4)
 
 
 def check_pressure(
@@ -77,9 +81,14 @@ def check_pressure(
 
 
 def discretised(
-    solid: LayeredSolid, size: float, surface: float, order: int, growth: float = 1.5
+    solid: LayeredSolid,
+    size: float,
+    surface: float,
+    order: int,
+    growth: float = 1.5,
+    edges: tuple[float, ...] = (),
 ) -> Discretisation:
-    """Elements of a mesh without a contact edge: below the radius 1 the surface is divided evenly.
+    """Elements of a mesh whose surface is divided evenly below the radius 1, but around ``edges``.
 
     growth : of the size towards the outer boundary
     """
@@ -92,6 +101,7 @@ def discretised(
         film_size=2 * size,
         rows=0.8 / size,
         surface=surface,
+        edges=edges,
     )
     mesh = meridian_mesh(contact_radius=1.0, thicknesses=solid.thicknesses, far=solid.far, grading=grading)
     return Discretisation(mesh, order)
@@ -163,6 +173,7 @@ class OffAxisFields:
     """The fields of all harmonics on one mesh, in scaled units.
 
     loads : of the normal pressure, (harmonics, nodes).   pressure : p (x, y)
+    edges : x on the axis y = 0 at which the pressure has a root.   surface : size of the triangles there
     """
 
     compliance: HarmonicCompliance
@@ -170,10 +181,18 @@ class OffAxisFields:
     loads: np.ndarray
     friction: float
     pressure: Pressure
+    edges: tuple[float, ...] = ()
+    surface: float = 0.0
 
     @classmethod
     def of(
-        cls, compliance: HarmonicCompliance, loads: np.ndarray, friction: float, pressure: Pressure
+        cls,
+        compliance: HarmonicCompliance,
+        loads: np.ndarray,
+        friction: float,
+        pressure: Pressure,
+        edges: tuple[float, ...] = (),
+        surface: float = 0.0,
     ) -> "OffAxisFields":
         d, materials = compliance.discretisation, compliance.solid.materials
         found = compliance.displacements(loads)
@@ -181,11 +200,16 @@ class OffAxisFields:
             for m, u in compliance.sliding(loads, friction).items():
                 found[m] = found[m] + u if m in found else u
         fields = tuple(HarmonicField(d, u, materials, m, np.zeros_like, 0.0, False) for m, u in found.items())
-        return cls(compliance, fields, loads, friction, pressure)
+        return cls(compliance, fields, loads, friction, pressure, edges, surface)
 
     @property
     def discretisation(self) -> Discretisation:
         return self.compliance.discretisation
+
+    @property
+    def least(self) -> float:
+        """Size of the triangles at the ``edges``."""
+        return float(surface_size(self.surface, 0.0))
 
     @property
     def load(self) -> float:
@@ -198,21 +222,20 @@ class OffAxisFields:
         return float(np.einsum("mi,mij,mj->", self.loads, self.compliance.matrices, self.loads))
 
     def __call__(self, points: SolidPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Displacement (3, n) and stress (6, n), cylindrical, and what the last third of harmonics adds."""
-        theta, at = np.arctan2(points.sin, points.cos), points.located
-        u, s = np.zeros((3, theta.size)), np.zeros((6, theta.size))
-        late_u, late_s = np.zeros_like(u), np.zeros_like(s)
-        for field in self.fields:
-            cos, sin = np.cos(field.harmonic * theta), np.sin(field.harmonic * theta)
-            displacement, stress = field(at)
-            displacement *= np.stack([cos, sin, cos])
-            stress *= np.stack([cos] * 4 + [sin] * 2)
-            u += displacement
-            s += stress
-            if field.harmonic > 2 * self.compliance.last / 3:
-                late_u += displacement
-                late_s += stress
+        """Displacement (3, n) and stress (6, n), cylindrical, and what the last third of harmonics adds.
+
+        Next to one of the ``edges`` the stress is that of a series, to which that counts as much as one more
+        power of it changes.
+        """
+        at = points.located
+        u, s, late_u, late_s = self._summed(points)
         surface = at.z == 0
+        for edge, (fewer, more) in zip(self.edges, self._series, strict=True):
+            x = at.r_given * points.cos
+            near = np.flatnonzero(surface & (np.abs(x - edge) < self.least) & (np.abs(points.sin) < 1e-9))
+            away = np.where(edge > 0, x[near] - edge, edge - x[near]) / self.least
+            s[:2, near] = _half_powers(away, fewer)
+            late_s[:2, near] += _half_powers(away, more) - s[:2, near]
         p = np.where(surface, self.pressure(at.r_given * points.cos, at.r_given * points.sin), 0.0)
         nu, f = self.compliance.solid.materials[0][1], self.friction
         s[:2] -= nu / (1 - nu) * p
@@ -220,6 +243,72 @@ class OffAxisFields:
         s[3] -= f * p * points.cos
         s[5] += f * p * points.sin
         return u, s, late_u, late_s
+
+    def _summed(self, points: SolidPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """The same without what the tractions themselves add on the surface, by the elements alone."""
+        at, theta = points.located, np.arctan2(points.sin, points.cos)
+        u, strain = self._strains(at, theta)
+        sides = {
+            id(side): self._strains(side, theta[numbers])[1]
+            for _, numbers, both in at.interfaces
+            for side in both
+        }
+        none, materials = np.zeros((3, theta.size)), self.compliance.solid.materials
+        s = stress_of(strain[0], none, at, materials, lambda side: sides[id(side)][0])
+        late_s = stress_of(strain[1], none, at, materials, lambda side: sides[id(side)][1])
+        return u[0], s, u[1], late_s
+
+    def _strains(self, at: LocatedPoints, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (2, 3, n) and strain (2, 6, n): of all harmonics, tapered in the strain, and of the
+        last third."""
+        u, strain = np.zeros((2, 3, theta.size)), np.zeros((2, 6, theta.size))
+        for field in self.fields:
+            displacement, found = field.amplitudes(at)
+            cos, sin = np.cos(field.harmonic * theta), np.sin(field.harmonic * theta)
+            displacement[[0, 2]] *= cos
+            displacement[1] *= sin
+            found[:4] *= cos
+            found[4:] *= sin
+            share = field.harmonic / self.compliance.last
+            u[0] += displacement
+            strain[0] += _taper(share) * found
+            if share > 2 / 3:
+                u[1] += displacement
+                strain[1] += found
+        return u, strain
+
+    @cached_property
+    def _series(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Coefficients (powers, 2) of rr and tt beside each edge, with three and with four powers.
+
+        Fitted where the triangles are no larger than their distance from the edge.
+        """
+        found = []
+        away = self.least * np.geomspace(*BESIDE, 24)
+        away = np.concatenate([-away, away])
+        for edge in self.edges:
+            x, zero = edge + np.sign(edge) * away, np.zeros(away.size)
+            located = self.discretisation.locator.points(np.abs(x), zero, zero.astype(int))
+            _, s, _, _ = self._summed(SolidPoints(located, np.sign(x), zero, x.shape))
+            terms = [_half_powers(away / self.least, np.eye(1 + 2 * n)).T for n in POWERS]
+            fewer, more = (np.linalg.lstsq(one, s[:2].T, rcond=None)[0] for one in terms)
+            found.append((fewer, more))
+        return found
+
+
+def _taper(share: float) -> float:
+    """Weight of a harmonic over the last one: the sum of a root's then oscillates less next to its end."""
+    return float(np.cos(np.pi / 2 * min(max(0.0, (share - FULL) / (1 - FULL)), 1.0)) ** 2)
+
+
+def _half_powers(away: np.ndarray, c: np.ndarray) -> np.ndarray:
+    """c_0 + sum_k c_k d^(k/2) of distances d inside the edge (away < 0), as many further c outside; (.., n).
+
+    c : (1 + 2 powers, ..)
+    """
+    k = np.arange(1, len(c) // 2 + 1) / 2
+    inside, outside = np.maximum(-away, 0)[:, None] ** k, np.maximum(away, 0)[:, None] ** k
+    return (np.hstack([np.ones((away.size, 1)), inside, outside]) @ c).T
 
 
 @dataclass(frozen=True, eq=False)

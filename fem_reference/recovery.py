@@ -23,7 +23,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .axisymmetric import Discretisation, elasticity, strain_operator
+from .axisymmetric import Discretisation, strain_operator
 from .location import LocatedPoints
 from .mesh import EDGE_SIZE, MeridianMesh
 
@@ -33,7 +33,8 @@ EDGE_SERIES = 20.0, 5000.0
 # A displaced edge adds the power -1/2, which is fitted and left out.
 _POWERS = np.array([-0.5, 0.5, 1.0, 1.5, 2.0])
 
-# Rows of the displacement and of the stress that are odd in r, by harmonic.
+_TRACTIONS = [2, 3, 5]  # rows of the stress on a plane z = const
+# Rows of the displacement and of the strain that are odd in r, by harmonic.
 _ODD = ([0], [3]), ([2], [0, 1, 2, 4])
 
 
@@ -79,30 +80,28 @@ class HarmonicField:
 
         Amplitudes of cos(m theta), of u_theta, rt and tz of sin(m theta).
         """
-        values, strain = self._fields_and_strains(at)
-        stress = self._hooke(strain, at.layer)
-        surface = at.z == 0
+        u, strain = self.amplitudes(at)
+        tractions, surface = np.zeros((3, at.r.size)), at.z == 0
         if np.any(surface):
-            in_plane = self._with_series(at.r[surface], strain[:, surface])
-            stress[:, surface] = self._on_plane(0, in_plane, self._surface_tractions(at.r[surface]))
-        for upper, on_interface, sides in at.interfaces:
-            tractions = self._interface_tractions(upper, sides)
-            for layer in (upper, upper + 1):
-                mine = at.layer[on_interface] == layer
-                numbers = on_interface[mine]
-                stress[:, numbers] = self._on_plane(layer, strain[:, numbers], tractions[:, mine])
-        displacement = np.zeros((3, at.r.size))
+            strain[:, surface] = self._with_series(at.r[surface], strain[:, surface])
+            tractions[:, surface] = self._surface_tractions(at.r[surface])
+        return u, stress_of(strain, tractions, at, self.materials, lambda side: self.amplitudes(side)[1])
+
+    def amplitudes(self, at: LocatedPoints) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (3, n) as above and strain (6, n), that of the elements alone."""
+        values, found = self._fields_and_strains(at)
+        u, strain = np.zeros((3, at.r.size)), np.zeros((6, at.r.size))
+        strain[: len(found)] = found
         if self.harmonic == 0:
-            displacement[0], displacement[2] = values
+            u[0], u[2] = values
         else:
-            displacement[:] = values[0] - values[1], values[1], values[2]
+            u[:] = values[0] - values[1], values[1], values[2]
         # Nearer to the axis than ``at.r``: what is odd in r vanishes in proportion.
-        inwards = at.r_given / at.r
         if self.harmonic < len(_ODD):
-            odd, odd_stresses = _ODD[self.harmonic]
-            displacement[odd] *= inwards
-            stress[odd_stresses] *= inwards
-        return displacement, stress
+            odd, odd_strains = _ODD[self.harmonic]
+            u[odd] *= at.r_given / at.r
+            strain[odd_strains] *= at.r_given / at.r
+        return u, strain
 
     def _fields_and_strains(self, at: LocatedPoints) -> tuple[np.ndarray, np.ndarray]:
         """Fields (fields, n) and strains (strains, n)."""
@@ -143,36 +142,9 @@ class HarmonicField:
             strain[row, near] = value[:, row]
         return strain
 
-    def _interface_tractions(self, upper: int, sides: list[LocatedPoints]) -> np.ndarray:
-        """(sigma_zz, sigma_rz, sigma_tz) on the interface below layer ``upper``, shape (3, n).
-
-        Each side is weighted by the inverse of its error: the error of strain is proportional to stress / E,
-        and the modulus at fixed width converts it to stress.
-        """
-        mean, total = np.zeros((3, sides[0].r.size)), 0.0
-        for layer, at in enumerate(sides, start=upper):
-            E, nu = self.materials[layer]
-            modulus = E * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
-            weight = E / modulus**2
-            _, strain = self._fields_and_strains(at)
-            mean += weight * self._hooke(strain, at.layer)[[2, 3, 5]]
-            total += weight
-        return mean / total
-
-    def _hooke(self, strain: np.ndarray, layer: np.ndarray) -> np.ndarray:
-        """Stress (6, n) of the strains of ``_fields_and_strains``."""
-        stress = np.zeros((6, layer.size))
-        stress[: strain.shape[0]] = np.einsum("stn,tn->sn", self._elasticity[:, :, layer], strain)
-        return stress
-
     @cached_property
     def _operator(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         return strain_operator(self.harmonic)
-
-    @cached_property
-    def _elasticity(self) -> np.ndarray:
-        """(strains, strains, layers)."""
-        return np.stack([elasticity(E, nu, self.harmonic) for E, nu in self.materials], axis=-1)
 
     def _surface_tractions(self, r: np.ndarray) -> np.ndarray:
         """(sigma_zz, sigma_rz, sigma_tz) on the surface, shape (3, n)."""
@@ -180,11 +152,49 @@ class HarmonicField:
         shares = np.array([0.0, 1.0, -1.0] if self.harmonic else [1.0, 0.0, 0.0])
         return np.multiply.outer(shares, self.factor * self.pressure(r))
 
-    def _on_plane(self, layer: int, strain: np.ndarray, tractions: np.ndarray) -> np.ndarray:
-        """Stress (6, n) on a plane z = const from the in-plane strains and the tractions on it."""
-        E, nu = self.materials[layer]
-        zz, rz, tz = tractions
-        rr = E / (1 - nu**2) * (strain[0] + nu * strain[1]) + nu / (1 - nu) * zz
-        tt = E / (1 - nu**2) * (strain[1] + nu * strain[0]) + nu / (1 - nu) * zz
-        rt = E / (2 * (1 + nu)) * strain[4] if self.harmonic else np.zeros(rr.shape)
-        return np.stack([rr, tt, zz, rz, rt, tz])
+
+def stress_of(
+    strain: np.ndarray,
+    tractions: np.ndarray,
+    at: LocatedPoints,
+    materials: tuple[tuple[float, float], ...],
+    strain_on: Callable[[LocatedPoints], np.ndarray],
+) -> np.ndarray:
+    """Stress (6, n) of a strain (6, n), on planes from the strain in the plane and the tractions.
+
+    tractions : (sigma_zz, sigma_rz, sigma_tz) on the surface, (3, n)
+    strain_on : strain (6, k) at the points on one side of an interface
+    """
+    E, nu = np.array(materials).T[:, at.layer]
+    surface = at.z == 0
+    stress = _hooke(strain, E, nu)
+    stress[:, surface] = _on_plane(strain[:, surface], tractions[:, surface], E[surface], nu[surface])
+    for upper, on_interface, sides in at.interfaces:
+        # Each side counts by the inverse of its error: the error of strain is proportional to stress / E,
+        # and the modulus at fixed width converts it to stress.
+        mean, total = np.zeros((3, on_interface.size)), 0.0
+        for (E_k, nu_k), side in zip(materials[upper : upper + 2], sides, strict=True):
+            weight = E_k / (E_k * (1 - nu_k) / ((1 + nu_k) * (1 - 2 * nu_k))) ** 2
+            mean += weight * _hooke(strain_on(side), E_k, nu_k)[_TRACTIONS]
+            total += weight
+        of_plane = strain[:, on_interface], mean / total, E[on_interface], nu[on_interface]
+        stress[:, on_interface] = _on_plane(*of_plane)
+    return stress
+
+
+def _hooke(strain: np.ndarray, E: np.ndarray | float, nu: np.ndarray | float) -> np.ndarray:
+    """Stress (6, n) of a strain (6, n)."""
+    G = E / (2 * (1 + nu))
+    stress = G * strain
+    stress[:3] = 2 * stress[:3] + 2 * G * nu / (1 - 2 * nu) * strain[:3].sum(axis=0)
+    return stress
+
+
+def _on_plane(
+    strain: np.ndarray, tractions: np.ndarray, E: np.ndarray | float, nu: np.ndarray | float
+) -> np.ndarray:
+    """Stress (6, n) on a plane z = const from the in-plane strains and the tractions on it."""
+    zz, rz, tz = tractions
+    rr = E / (1 - nu**2) * (strain[0] + nu * strain[1]) + nu / (1 - nu) * zz
+    tt = E / (1 - nu**2) * (strain[1] + nu * strain[0]) + nu / (1 - nu) * zz
+    return np.stack([rr, tt, zz, rz, E / (2 * (1 + nu)) * strain[4], tz])

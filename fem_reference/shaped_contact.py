@@ -17,6 +17,7 @@ from .estimate import Uncertainty
 from .harmonic_compliance import DENSITY, harmonic_compliance
 from .indenter_height import Height, Indenter, indenter_height
 from .levels import NotConverged
+from .mesh import surface_size
 from .off_axis import OffAxisFields, PressedSolid, discretised
 from .scaling import Coatings, LayeredSolid, Units
 from .star_contact import Corrected, StarPressure, corrected
@@ -26,12 +27,13 @@ __all__ = ["ShapedContact", "ShapedDiagnostics", "solve_shape"]
 
 MARGIN = 1.04  # of the contact up to the last node below the pressure
 WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
-QUALITIES = {"fast": (0.5, 0.09, 120), "default": (0.38, 0.05, 240), "fine": (0.38, 0.045, 288)}
+QUALITIES = {"fast": (0.5, 0.1, 120), "default": (0.38, 0.05, 240), "fine": (0.38, 0.045, 288)}
 STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish
 WAVES = 4e-5  # of the peak, by short waves of the pressure given: 5e-5 in one of 30 ellipses, on both meshes
 SAFETY = 2.0  # of the change from the companion
 # times as much on the axis, where integrals in r dr hold the fields least; so far around it
 AXIS = 2.25, 0.15
+RESOLVED = 1 / 8  # of an element's width
 COARSER = 1.3  # triangles of the companion over those of the mesh
 CORRECTING = 96  # of the harmonics, that correct the pressure
 FEWER = 0.7  # of these, for the change by what is beyond them
@@ -75,7 +77,6 @@ class ShapedContact(PressedSolid):
     uncertainty: Uncertainty | None
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
-    element_width: float = field(repr=False)
     stiffness: float | None = None
     stiffness_uncertainty: float | None = None
 
@@ -95,21 +96,28 @@ class ShapedContact(PressedSolid):
         """What the elements may smear of the stress on the surface [Pa], where the pressure has its root.
 
         Along the surface the strain below a pressure is -(1 + nu)(1 - 2 nu)/E of it, so the stress changes by
-        (1 - 2 nu)/(1 - nu) of what the pressure differs from the cubic through its values half an element's
-        width and a width on either side.
+        (1 - 2 nu)/(1 - nu) of what the pressure differs from the cubic through its values a share `RESOLVED`
+        of an element's width and twice that on either side, or in y a fourth and half of the shortest wave.
+        On the series at an edge it does not.
         """
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        h, nu = self.element_width / 2, self._fine.compliance.solid.materials[0][1]
+        fields, length = self._fine, self._units.length
+        edges = np.array(fields.edges) * length
+        away = np.abs(np.hypot(x, y)[..., None] - np.abs(edges)).min(axis=-1)
+        h = length * np.maximum(RESOLVED * surface_size(fields.surface, away / length), fields.least / 3)
+        k = np.maximum(h, np.hypot(x, y) * np.pi / (2 * fields.compliance.last))
+        nu = fields.compliance.solid.materials[0][1]
+        on_series = (y == 0) & (away < length * fields.least)
         missed = []
-        for i, j in ((h, 0.0), (0.0, h)):
+        for i, j in ((h, 0 * h), (0 * k, k)):
             for beside in (-0.5, 0.0, 0.5):  # it changes sign next to the edge
                 p, near, far = (
-                    self.pressure(x + (beside + k) * i, y + (beside + k) * j)
-                    + self.pressure(x + (beside - k) * i, y + (beside - k) * j)
-                    for k in (0, 1, 2)
+                    self.pressure(x + (beside + step) * i, y + (beside + step) * j)
+                    + self.pressure(x + (beside - step) * i, y + (beside - step) * j)
+                    for step in (0, 1, 2)
                 )
                 missed.append(np.abs((4 * near - far) / 6 - p / 2))
-        return (1 - 2 * nu) / (1 - nu) * np.max(missed, axis=0)
+        return np.where(on_series, 0.0, (1 - 2 * nu) / (1 - nu) * np.max(missed, axis=0))
 
     @cached_property
     def _typical(self) -> float:
@@ -205,7 +213,9 @@ def solve_shape(
         return height(x * reach, y * reach) / reach
 
     def on_mesh(coarser: float, begin: StarPressure) -> tuple[OffAxisFields, Corrected, np.ndarray]:
-        d = discretised(solid, coarser * size, coarser * surface, order, growth=0.8)
+        radii = sorted(round(abs(x), 4) for x in begin.edges)
+        apart = tuple(r for r, before in zip(radii, [0.0, *radii], strict=False) if r - before > surface / 10)
+        d = discretised(solid, coarser * size, coarser * surface, order, growth=0.8, edges=apart)
         compliance = harmonic_compliance(solid, d, harmonics, fold, DENSITY / coarser)
         found = corrected(compliance, begin, scaled_height, load / unit.load, correcting)
         if not found.converged:
@@ -213,7 +223,8 @@ def solve_shape(
                 f"the pressure under the {indenter[0]} is not settled after {found.steps} corrections; "
                 "the start is too far from it, or its contact is not star-shaped"
             )
-        fields = OffAxisFields.of(compliance, found.loads, friction, found.pressure)
+        p = found.pressure
+        fields = OffAxisFields.of(compliance, found.loads, friction, p, p.edges, coarser * surface)
         beyond = np.zeros(5)
         if coarser > 1:
             fewer = corrected(
@@ -264,7 +275,6 @@ def solve_shape(
         uncertainty=uncertainty,
         extent_uncertainty=extents,
         height=height,
-        element_width=surface * reach,
     )
 
 

@@ -179,6 +179,13 @@ class StarPressure:
         return replace(self, given=given, centre=self.centre / length, radius=self.radius / length)
 
     @property
+    def edges(self) -> tuple[float, ...]:
+        """x at which the edge crosses the axis y = 0."""
+        ahead, behind = self.edge_at(np.array([0.0, np.pi]))
+        x = (self.centre + ahead, self.centre - behind)
+        return (*x, -x[0], -x[1]) if self.centre else x
+
+    @property
     def peak(self) -> float:
         """Largest pressure, between the points of a grid by a parabola in each direction."""
         s, tau = np.linspace(0, 0.99, 100), np.pi * np.arange(61) / 60

@@ -75,9 +75,9 @@ def check_proportions(thicknesses: Sequence[float], unit: str, of: str = "") -> 
     """Raise ValueError for coatings too thin or too thick to mesh beside a contact of radius 1 ``unit``."""
     for k, h in enumerate(thicknesses, start=1):
         if not MIN_THICKNESS <= h <= MAX_THICKNESS:
-            what = "leave it out" if h < MIN_THICKNESS else "use its material for the substrate"
+            what = "thin; leave it out" if h < MIN_THICKNESS else "thick; use its material for the substrate"
             raise ValueError(
-                f"thickness of {of}coating {k} is {h:.3g} {unit}; {what}, or keep it between "
+                f"thickness of {of}coating {k} is {h:.3g} {unit}, too {what}, or keep it between "
                 f"{MIN_THICKNESS:g} and {MAX_THICKNESS:g} {unit}"
             )
 

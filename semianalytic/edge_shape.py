@@ -175,7 +175,7 @@ class Shape:
     def _smooth(self, t: Array, H: Array) -> Array:
         """q [Pa]."""
         P = legendre.legvander(self._argument(t), len(self.coefficients) - 1)
-        return np.asarray(np.einsum("...k,k...->...", P @ self.coefficients, H))
+        return np.asarray(np.einsum("...k,k...->...", P @ self.coefficients, H)).reshape(np.shape(t))
 
     def columns(self, x: Array, y: Array, blunt: float) -> Array:
         """df/db, then df/dc, ((M + 1) k,) + points; 0 outside.  blunt : t below which 1/sqrt(t) is

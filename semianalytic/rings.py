@@ -66,8 +66,9 @@ class RingPressure(Protocol):
         """Rings around points x, y [m], (n,), below which fields change over depths from ``scale`` [m]."""
 
 
+@lru_cache(maxsize=16)
 def rings_of(shape: Shape, coarser: int = 0) -> "RingPressure":
-    """The pressure of a shape, by fewer points where ``coarser``."""
+    """The pressure of a shape, by fewer points where ``coarser``; the same object for the same one."""
     terms = len(shape.coefficients)
     more = 12 if shape.outside else 0
     angular, radial = 16 + more + terms - 2 * coarser, 8 + more + terms // 4 - coarser
@@ -171,7 +172,11 @@ class SmoothContour:
         return self.shape.pressure(x, y)
 
     def rings(self, x: Array, y: Array, scale: Array) -> Rings:
-        """As in `RingPressure`."""
+        """As in `RingPressure`; the last ones are kept, for the other side of an interface."""
+        return _around_contour(self, *(v.tobytes() for v in (x, y, scale)))
+
+    def around(self, x: Array, y: Array, scale: Array) -> Rings:
+        """The same, anew."""
         inside = self.shape.polynomials(x, y)[0] > 0
         marks = list(zip(self._touching(x, y), inside.tolist(), strict=True))
         foot, radius, weight = _panels(marks, scale, self.radial)
@@ -298,6 +303,11 @@ class Node:
         unit = _around_node(*(v.tobytes() for v in places))
         harmonics = unit.harmonics / self.d**2
         return Rings(unit.foot, unit.radius * self.d, unit.weight * self.d**2, harmonics)
+
+
+@lru_cache(maxsize=12)
+def _around_contour(contour: SmoothContour, *places: bytes) -> Rings:
+    return contour.around(*(np.frombuffer(v) for v in places))
 
 
 @lru_cache(maxsize=8)

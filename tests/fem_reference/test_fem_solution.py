@@ -224,7 +224,8 @@ def test_the_companion_is_coarser_everywhere_by_one_factor(size):
     final, companion = asdict(final_grading(size)), asdict(companion_grading(size))
     assert final.pop("rows") / companion.pop("rows") == pytest.approx(COMPANION)
     assert companion.pop("edge_size") > final.pop("edge_size")
-    assert companion.pop("surface") == final.pop("surface") == 0.0  # for contacts that are no discs
+    assert companion.pop("surface") == final.pop("surface") == 0.0  # for contacts that are no discs, as are
+    assert companion.pop("edges") == final.pop("edges") == ()
     for name in final:
         assert companion[name] / final[name] == pytest.approx(COMPANION), name
 

@@ -9,11 +9,12 @@ import numpy as np
 from verification.cases.case_file import Case
 from verification.judging.invariants import Invariant, check, resolved
 from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
+from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.line_profile import Profile
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.running.case_result import CaseResult, SourceResult, diagnostics_of, message_of
-from verification.sampling.line_sampling import edge_of, positions, sample, sample_contact
+from verification.sampling.line_sampling import edge_of, ends_of, positions, sample, sample_contact
 from verification.sources.source_record import Solver
 from verification.sources.source_registry import solvers, sources_of
 
@@ -74,7 +75,10 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
     solutions, outcomes = dict(solved.solutions), dict(solved.outcomes)
     profiles: dict[tuple[str, str, str], Profile] = {}
     places = positions(case.problem, case.lines, solutions) if solutions else {}
-    edge = edge_of(solutions) if solutions and case.problem.indenter is None else None
+    edge: float | Array | None = None
+    if solutions:
+        shaped = case.problem.indenter is not None
+        edge = ends_of(next(iter(solutions.values()))) if shaped else edge_of(solutions)
     for source, solution in solutions.items():
         begin = time.perf_counter()
         try:

@@ -21,7 +21,7 @@ from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIE
 from verification.sampling import oblique_sampling
 from verification.sampling.largest_tension import BESIDE, ENDS, Search, around_edge, edge_uncertainty
 
-__all__ = ["edge_of", "positions", "sample", "sample_contact"]
+__all__ = ["edge_of", "ends_of", "positions", "sample", "sample_contact"]
 
 # Of a: distances from the contact edge of points on the surface line, either side.
 NEAR_EDGE = np.array([0.0, 1e-4, 1e-3, 1e-2])
@@ -38,8 +38,8 @@ def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> t
     return tuple(found)
 
 
-# Of a, around the edge of a contact that is no disc: no point there but on ``EDGE_LINE``. The edge crosses
-# the rings of the meridian mesh, so that the uncertainty of the elements exceeds the caps nearer to it.
+# Of a, around the edge of a contact that is no disc: no point there but on ``EDGE_LINE``, along which the
+# meridian mesh is made for the edge.
 CLEAR = 0.3
 BESIDE_SHAPED = np.array([0.0, 0.01, 0.03, 0.08, 0.15, 0.25])  # of a, either side of it on ``EDGE_LINE``
 SHAPED = 21  # points on either side of x = 0, of rings about which there are no tables
@@ -77,7 +77,7 @@ def positions(
         if line.coordinate == "z":
             return z[line.body]
         if line.name == EDGE_LINE:
-            ends = np.array(_edges(first, nodes))[:, None]
+            ends = ends_of(first)[:, None]
             return np.unique(np.concatenate([ends + BESIDE_SHAPED * a, ends - BESIDE_SHAPED * a]))
         if line.depth is None:
             at = oblique_sampling.positions(problem, line, a, getattr(first, "nodes", nodes))
@@ -89,8 +89,9 @@ def positions(
     return {line: along(line) for line in lines}
 
 
-def _edges(solution: Solution, x: Array) -> list[float]:
-    """Where on y = 0 the contact begins or ends [m], found between the places x [m]."""
+def ends_of(solution: Solution) -> Array:
+    """Where on y = 0 the contact begins or ends [m], found between the surface nodes."""
+    x = solution.surface_nodes
     least = 1e-6 * solution.peak_pressure
     loaded = solution.pressure(x) > least
     low, high = (x[side][loaded[1:] != loaded[:-1]] for side in (slice(None, -1), slice(1, None)))
@@ -99,7 +100,7 @@ def _edges(solution: Solution, x: Array) -> list[float]:
         middle = (low + high) / 2
         same = (solution.pressure(middle) > least) == begins
         low, high = np.where(same, low, middle), np.where(same, middle, high)
-    return list(np.where(begins, high, low))
+    return np.where(begins, high, low)
 
 
 def _clear_of_edges(solution: Solution, line: Line, at: Array, distance: float) -> Array:
@@ -130,15 +131,16 @@ def sample(
     line: Line,
     position: Array,
     problem: CoatedContact | None = None,
-    edge: float | None = None,
+    edge: float | Array | None = None,
 ) -> tuple[Profile, ...]:
     """Every quantity of ``line`` at ``position`` [m]: the four stresses, on the surface the pressure too.
 
     Off the plane y = 0 see ``oblique``. On a line of the ball x is that of the flat.
 
     problem : on the surface also its largest tension with its place, as ``PEAKS`` of the contact.
-    edge : as of ``edge_of``; points within ``BESIDE`` of that edge [m] are evaluated at the same x/a of the
-           solution's own edge, where a value does not depend on the error of the radius.
+    edge : as of ``edge_of``, or of a contact that is no disc as of ``ends_of``; points within ``BESIDE`` of
+           that edge [m] are evaluated at the same x/a of the solution's own edge, where a value does not
+           depend on the error of the radius.
     """
     if line.depth is None and line.coordinate != "z":
         return oblique_sampling.sample(solution, source, line, position)
@@ -150,7 +152,14 @@ def sample(
     a = float(solution.contact_radius)
     relative = relative_to_edge(solution)
     near = np.zeros(x.shape, dtype=bool)
-    if edge is not None:
+    if isinstance(edge, np.ndarray):
+        here = ends_of(solution)
+        if line.name == EDGE_LINE and here.shape == edge.shape:
+            nearest = np.abs(position[:, None] - edge).argmin(axis=1)
+            near = np.abs(position - edge[nearest]) <= (1 + 1e-9) * BESIDE * a
+            x[near] += (here - edge)[nearest[near]]
+        edge = None
+    elif edge is not None:
         near = (np.hypot(np.abs(position) - edge, z) <= BESIDE * edge) & (line.coordinate == "x")
         x[near] *= a / edge
     # of a solution that does not state its uncertainty relative to the edge, that of points on it is followed
