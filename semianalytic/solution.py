@@ -36,8 +36,9 @@ INSIDE, AT_EDGE = (4.0, 0.8), (8.0, 2.0)
 FLOOR, REACH = (0.35, 6e-7), 8.0
 DEFLECTED = 0.2  # of that floor over the peak pressure, that the displacement over the approach feels
 # deep down a stress follows the moments of the pressure, the second one a^2 at a given load: share of the
-# relative uncertainty of a, 5 times its error in the median; in full below as many patches
-DEEP = 0.15, 32.0
+# relative uncertainty of a, 5 times its error in the median, of which 0.4 was needed; in full below as many
+# patches
+DEEP = 0.5, 32.0
 # likewise near the edge, of the ripple of the patches, which the shape averages, and of the largest change
 # there; within some patches of it
 RIPPLE, WANDERING, TAPER = 0.9, 1.1, 16.0

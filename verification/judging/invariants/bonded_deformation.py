@@ -22,6 +22,7 @@ ANGLE = 0.35
 STEP = 1e-3
 # Of the approach, over the contact radius: strain by what an evaluation leaves of a displacement in a layer.
 EVALUATED = 2e-8
+ON_EITHER_SIDE = 6e-8  # of the approach, likewise of a displacement on either side of a thin soft film
 
 
 def bonded_traction(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
@@ -39,7 +40,8 @@ def bonded_traction(solution: Solution, source: str, problem: CoatedContact, k: 
 def bonded_displacement(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
     """u is the same on both sides of interface ``k``, extrapolated from three depths on each side.
 
-    Bounded by the uncertainty of displacements on both sides plus the change by the third depth.
+    Bounded by the uncertainty of displacements on both sides and of their evaluation, plus the change by the
+    third depth.
     """
     x, y, z = _line(solution, problem, k)
     thickness = [h for _, _, h in problem.coatings] + [solution.contact_radius]
@@ -53,7 +55,7 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
     bound = None
     if solution.uncertainty is not None:
         U = displacement_bound(solution, problem, x, y, z, given_pressure=True)
-        bound = (error + 2 * U) / solution.approach
+        bound = (error + 2 * U) / solution.approach + 2 * ON_EITHER_SIDE
     law = f"u passes interface {k} unchanged, over the approach"
     gap = (at[0] - at[1]) / solution.approach
     return decide(f"bonded displacements, interface {k}", source, law, gap, bound)

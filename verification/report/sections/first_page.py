@@ -134,7 +134,7 @@ def largest(material: Material) -> list[str]:
         and (gap := plane_difference(plane, float(divisor(result, "sigma_xx", 0.0)))) is not None
     ]
     if gaps:
-        texts.append(f"In the pictures, not judged, {scientific(max(gaps))}.")
+        texts.append(f"In the pictures of sigma_xx, which are not judged: {scientific(max(gaps))}.")
     return texts
 
 
