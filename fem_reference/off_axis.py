@@ -230,12 +230,14 @@ class OffAxisFields:
         at = points.located
         u, s, late_u, late_s = self._summed(points)
         surface = at.z == 0
-        for edge, (fewer, more) in zip(self.edges, self._series, strict=True):
-            x = at.r_given * points.cos
-            near = np.flatnonzero(surface & (np.abs(x - edge) < self.least) & (np.abs(points.sin) < 1e-9))
-            away = np.where(edge > 0, x[near] - edge, edge - x[near]) / self.least
-            s[:2, near] = _half_powers(away, fewer)
-            late_s[:2, near] += _half_powers(away, more) - s[:2, near]
+        x, along = at.r_given * points.cos, surface & (np.abs(points.sin) < 1e-9)
+        for k, edge in enumerate(self.edges):
+            near = np.flatnonzero(along & (np.abs(x - edge) < self.least))
+            if near.size:
+                fewer, more = self._series[k]
+                away = np.sign(edge) * (x[near] - edge) / self.least
+                s[:2, near] = _half_powers(away, fewer)
+                late_s[:2, near] += _half_powers(away, more) - s[:2, near]
         p = np.where(surface, self.pressure(at.r_given * points.cos, at.r_given * points.sin), 0.0)
         nu, f = self.compliance.solid.materials[0][1], self.friction
         s[:2] -= nu / (1 - nu) * p

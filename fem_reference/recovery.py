@@ -23,7 +23,7 @@ from functools import cached_property
 
 import numpy as np
 
-from .axisymmetric import Discretisation, strain_operator
+from .axisymmetric import Discretisation, elasticity, strain_operator
 from .location import LocatedPoints
 from .mesh import EDGE_SIZE, MeridianMesh
 
@@ -167,7 +167,7 @@ def stress_of(
     """
     E, nu = np.array(materials).T[:, at.layer]
     surface = at.z == 0
-    stress = _hooke(strain, E, nu)
+    stress = _hooke(strain, materials, at.layer)
     stress[:, surface] = _on_plane(strain[:, surface], tractions[:, surface], E[surface], nu[surface])
     for upper, on_interface, sides in at.interfaces:
         # Each side counts by the inverse of its error: the error of strain is proportional to stress / E,
@@ -175,19 +175,17 @@ def stress_of(
         mean, total = np.zeros((3, on_interface.size)), 0.0
         for (E_k, nu_k), side in zip(materials[upper : upper + 2], sides, strict=True):
             weight = E_k / (E_k * (1 - nu_k) / ((1 + nu_k) * (1 - 2 * nu_k))) ** 2
-            mean += weight * _hooke(strain_on(side), E_k, nu_k)[_TRACTIONS]
+            mean += weight * _hooke(strain_on(side), materials, side.layer)[_TRACTIONS]
             total += weight
         of_plane = strain[:, on_interface], mean / total, E[on_interface], nu[on_interface]
         stress[:, on_interface] = _on_plane(*of_plane)
     return stress
 
 
-def _hooke(strain: np.ndarray, E: np.ndarray | float, nu: np.ndarray | float) -> np.ndarray:
+def _hooke(strain: np.ndarray, materials: tuple[tuple[float, float], ...], layer: np.ndarray) -> np.ndarray:
     """Stress (6, n) of a strain (6, n)."""
-    G = E / (2 * (1 + nu))
-    stress = G * strain
-    stress[:3] = 2 * stress[:3] + 2 * G * nu / (1 - 2 * nu) * strain[:3].sum(axis=0)
-    return stress
+    D = np.stack([elasticity(E, nu, 1) for E, nu in materials])[layer]
+    return np.asarray(np.einsum("nst,tn->sn", D, strain))
 
 
 def _on_plane(

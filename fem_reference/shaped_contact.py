@@ -27,7 +27,7 @@ __all__ = ["ShapedContact", "ShapedDiagnostics", "solve_shape"]
 
 MARGIN = 1.04  # of the contact up to the last node below the pressure
 WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
-QUALITIES = {"fast": (0.5, 0.1, 120), "default": (0.38, 0.05, 240), "fine": (0.38, 0.045, 288)}
+QUALITIES = {"fast": (0.5, 0.09, 120), "default": (0.38, 0.05, 240), "fine": (0.38, 0.045, 288)}
 STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish
 WAVES = 4e-5  # of the peak, by short waves of the pressure given: 5e-5 in one of 30 ellipses, on both meshes
 SAFETY = 2.0  # of the change from the companion
@@ -213,6 +213,7 @@ def solve_shape(
         return height(x * reach, y * reach) / reach
 
     def on_mesh(coarser: float, begin: StarPressure) -> tuple[OffAxisFields, Corrected, np.ndarray]:
+        # vertices at the radii of the edge on y = 0, none right beside another
         radii = sorted(round(abs(x), 4) for x in begin.edges)
         apart = tuple(r for r, before in zip(radii, [0.0, *radii], strict=False) if r - before > surface / 10)
         d = discretised(solid, coarser * size, coarser * surface, order, growth=0.8, edges=apart)

@@ -153,8 +153,7 @@ def sample(
     relative = relative_to_edge(solution)
     near = np.zeros(x.shape, dtype=bool)
     if isinstance(edge, np.ndarray):
-        here = ends_of(solution)
-        if line.name == EDGE_LINE and here.shape == edge.shape:
+        if line.name == EDGE_LINE and (here := ends_of(solution)).shape == edge.shape:
             nearest = np.abs(position[:, None] - edge).argmin(axis=1)
             near = np.abs(position - edge[nearest]) <= (1 + 1e-9) * BESIDE * a
             x[near] += (here - edge)[nearest[near]]

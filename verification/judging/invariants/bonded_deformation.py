@@ -20,9 +20,9 @@ RADII = np.array([0.0, 0.5, 0.9, 1.4])
 ANGLE = 0.35
 # Of the thinner neighbour; a tenth of a per cent curves a displacement by 1e-6 of its change in the layer.
 STEP = 1e-3
-# Of the approach, over the contact radius: strain by what an evaluation leaves of a displacement in a layer.
+# What an evaluation leaves of a displacement in a layer: of the approach, and in the outermost coating of the
+# deflection of a half-space of its material, of which a film is what the layers below take away.
 EVALUATED = 2e-8
-ON_EITHER_SIDE = 6e-8  # of the approach, likewise of a displacement on either side of a thin soft film
 
 
 def bonded_traction(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
@@ -40,8 +40,8 @@ def bonded_traction(solution: Solution, source: str, problem: CoatedContact, k: 
 def bonded_displacement(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
     """u is the same on both sides of interface ``k``, extrapolated from three depths on each side.
 
-    Bounded by the uncertainty of displacements on both sides and of their evaluation, plus the change by the
-    third depth.
+    Bounded by the uncertainty of displacements on both sides, the change by the third depth, and below the
+    outermost coating plus what an evaluation leaves.
     """
     x, y, z = _line(solution, problem, k)
     thickness = [h for _, _, h in problem.coatings] + [solution.contact_radius]
@@ -55,7 +55,9 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
     bound = None
     if solution.uncertainty is not None:
         U = displacement_bound(solution, problem, x, y, z, given_pressure=True)
-        bound = (error + 2 * U) / solution.approach + 2 * ON_EITHER_SIDE
+        E, nu, _ = problem.coatings[0]
+        alone = np.pi / 2 * (1 - nu**2) / E * solution.peak_pressure * solution.contact_radius
+        bound = (error + 2 * U + (EVALUATED * alone if k == 1 else 0.0)) / solution.approach
     law = f"u passes interface {k} unchanged, over the approach"
     gap = (at[0] - at[1]) / solution.approach
     return decide(f"bonded displacements, interface {k}", source, law, gap, bound)
