@@ -27,7 +27,9 @@ __all__ = ["ShapedContact", "ShapedDiagnostics", "solve_shape"]
 
 MARGIN = 1.04  # of the contact up to the last node below the pressure
 WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
-QUALITIES = {"fast": (0.5, 0.09, 120), "default": (0.38, 0.05, 240), "fine": (0.38, 0.045, 288)}
+QUALITIES = {"fast": (0.5, 0.12, 120), "default": (0.38, 0.07, 240), "fine": (0.38, 0.06, 288)}
+# Times the number of waves as wide as the contact at its end on y = 0, as deep inside as the triangles there.
+AT_END = 3.2
 STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish
 WAVES = 4e-5  # of the peak, by short waves of the pressure given: 5e-5 in one of 30 ellipses, on both meshes
 SAFETY = 2.0  # of the change from the companion
@@ -183,15 +185,15 @@ def solve_shape(
     indenter : shape and numbers, see ``indenter_height``.  start : p(x, y) [Pa] of arrays [m], by another
     method
     size, surface : of the triangles over their distance from the contact; on the surface below it over its
-    extent.  quality : "fast", "default" or "fine"; sets size, surface and harmonics that are not given
+    extent.  quality : "fast", "default" or "fine"; sets size, surface and harmonics that are not given, more
+    of them for a contact with pointed ends on y = 0
     Raises ValueError for bad input, NotConverged where the correction does not end.
     """
     began = time.perf_counter()
     check_choice("quality", quality, tuple(QUALITIES))
     usual = QUALITIES[quality]
     size, surface = usual[0] if size is None else size, usual[1] if surface is None else surface
-    harmonics = usual[2] if harmonics is None else harmonics
-    check_positive(radius=radius, load=load, far=far, size=size, surface=surface, harmonics=harmonics)
+    check_positive(radius=radius, load=load, far=far, size=size, surface=surface)
     check_materials(coatings, substrate, friction)
     check_choice("order", order, (2, 3, 4))
     height, fold = indenter_height(indenter, radius)
@@ -207,6 +209,10 @@ def solve_shape(
     check_proportions(solid.thicknesses, "the contact's extent")
     scaled = pressure.scaled(reach, E)
 
+    if harmonics is None:
+        waves = np.pi / scaled.end_angle(float(surface_size(surface, 0.0)))
+        harmonics = fold * int(np.ceil(usual[2] / fold * max(1.0, AT_END * waves / QUALITIES["default"][2])))
+    check_positive(harmonics=harmonics)
     correcting = min(CORRECTING, harmonics)
 
     def scaled_height(x: Any, y: Any) -> Any:

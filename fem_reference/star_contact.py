@@ -27,10 +27,10 @@ __all__ = ["StarPressure", "corrected"]
 Pressure = Callable[[Any, Any], Any]
 
 DEGREE = 2
-RADIAL = 20  # points between two vertices of the surface
+RADIAL = 10  # points between two vertices of the surface
 ANGULAR = 24, 1.6  # points on an arc inside the contact: some, and more for each harmonic
 SAMPLES = 256  # on half a circle, between which an arc begins or ends
-WAVES = 48  # of the cosine series of R
+WAVES = 32  # of the cosine series of 1/R^2, which has two for an ellipse
 BISECTIONS = 48
 STEPS, ENOUGH, CLOSE = 8, 3e-7, 1e-4  # change of the edge in the last step, and in one that failed
 TOUCHING = 1e-5  # of the largest pressure on the axis of symmetry: p above counts as contact
@@ -42,13 +42,14 @@ class StarPressure:
     """A ``given`` pressure with its edge moved and with smooth terms added; lengths and pressure scaled.
 
     centre : x of the centre, whose mirror image at -x counts too unless it is 0.  fold : of the symmetry
-    radius : coefficients of R by cos(k tau).  edge : c_n of the ``waves``.  coefficients : of the ``terms``
+    contour : coefficients of 1/R^2 by cos(k tau).  edge : c_n of the ``waves``.  coefficients : of the
+    ``terms``
     """
 
     given: Pressure
     centre: float
     fold: int
-    radius: np.ndarray
+    contour: np.ndarray
     edge: np.ndarray
     coefficients: np.ndarray
 
@@ -74,7 +75,7 @@ class StarPressure:
             loaded = (given(at, r * np.sin(tau)) > least) & ((at > 0) | (centre == 0))
             low, high = np.where(loaded, r, low), np.where(loaded, high, r)
         k = np.arange(WAVES)
-        series = np.cos(k[:, None] * tau) @ low * np.where(k > 0, 2, 1) / tau.size
+        series = np.cos(k[:, None] * tau) @ low**-2 * np.where(k > 0, 2, 1) / tau.size
         empty = cls(given, centre, fold, series, np.zeros(0), np.zeros(0))
         return replace(
             empty, edge=np.zeros(len(empty.waves)), coefficients=np.zeros(len(empty.terms(DEGREE)))
@@ -97,7 +98,7 @@ class StarPressure:
         return self._unmoved(tau) * (1 + self._shift(np.ones(tau.shape), tau))
 
     def _unmoved(self, tau: np.ndarray) -> np.ndarray:
-        return np.polynomial.chebyshev.chebval(np.cos(tau), self.radius)
+        return np.polynomial.chebyshev.chebval(np.cos(tau), self.contour) ** -0.5
 
     def _shift(self, s: np.ndarray, tau: np.ndarray) -> np.ndarray:
         """Relative change of r of the points s of the given pressure; regular at the centre."""
@@ -176,7 +177,7 @@ class StarPressure:
         def given(x: Any, y: Any) -> np.ndarray:
             return np.asarray(self.given(np.asarray(x) * length, np.asarray(y) * length)) / pressure
 
-        return replace(self, given=given, centre=self.centre / length, radius=self.radius / length)
+        return replace(self, given=given, centre=self.centre / length, contour=self.contour * length**2)
 
     @property
     def edges(self) -> tuple[float, ...]:
@@ -184,6 +185,17 @@ class StarPressure:
         ahead, behind = self.edge_at(np.array([0.0, np.pi]))
         x = (self.centre + ahead, self.centre - behind)
         return (*x, -x[0], -x[1]) if self.centre else x
+
+    def end_angle(self, depth: float) -> float:
+        """Half of the angle about the origin that the contact fills at a ``depth`` inside its end on x > 0.
+
+        Pi where it reaches no farther there than to the sides.
+        """
+        tau = np.linspace(0, np.pi, 1441)
+        R = self.edge_at(tau)
+        x, y = self.centre + R * np.cos(tau), R * np.sin(tau)
+        ended = np.flatnonzero(np.hypot(x, y) < x[0] - depth)
+        return float(np.arctan2(y, x)[ended[0]]) if ended.size else np.pi
 
     @property
     def peak(self) -> float:
