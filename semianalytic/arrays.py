@@ -8,8 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import correlate1d
 
-__all__ = ["BLOCK", "Mirror", "blocks", "dot", "gaussian_mean", "strips", "subtract", "total"]
-
 Array = NDArray[np.floating]
 Mirror = Literal["mirror", "reflect"]
 

@@ -25,8 +25,6 @@ from numpy.typing import NDArray
 from semianalytic import arrays
 from semianalytic.arrays import Mirror, blocks
 
-__all__ = ["Contact", "NotConverged", "solve"]
-
 Array = NDArray[np.floating]
 Mask = NDArray[np.bool_]
 Operator = Callable[[Array], Array]

@@ -19,8 +19,6 @@ from numpy.typing import NDArray
 
 from semianalytic import halved_convolution
 
-__all__ = ["circulant_inverse", "even_convolution", "good_size", "memory_size"]
-
 Array = NDArray[np.floating]
 
 BLOCK = (

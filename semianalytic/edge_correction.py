@@ -17,8 +17,6 @@ from semianalytic.edge_shape import Shape, Step
 from semianalytic.level import Level, LevelProblem
 from semianalytic.smooth_edge import EdgePatches
 
-__all__ = ["corrected"]
-
 Array = NDArray[np.floating]
 
 ROUNDS = 8  # at most

@@ -28,8 +28,6 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter
 
-__all__ = ["EVEN", "FULL", "HALF", "ROUND", "Shape", "Step", "fitted", "start"]
-
 Array = NDArray[np.floating]
 
 ROUND = (0,)  # harmonics of a contact that is round,

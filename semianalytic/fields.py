@@ -10,8 +10,6 @@ from semianalytic.inputs import Body
 from semianalytic.level import Level
 from semianalytic.rings import rings_of
 
-__all__ = ["displacement", "displacement_plane", "stress", "stress_of_uncertain_edge", "stress_plane"]
-
 Array = NDArray[np.floating]
 
 

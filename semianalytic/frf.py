@@ -23,16 +23,6 @@ import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = [
-    "Load",
-    "compliance",
-    "compliance_excess",
-    "displacement_frf",
-    "homogeneous_displacement",
-    "homogeneous_stress",
-    "stress_frf",
-]
-
 Array = NDArray[Any]
 Coatings = Sequence[tuple[float, float, float]]
 Load = Literal["normal", "in-plane", "anti-plane"]

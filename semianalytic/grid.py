@@ -16,8 +16,6 @@ from scipy.interpolate import RectBivariateSpline
 
 from semianalytic.arrays import blocks, strips, total
 
-__all__ = ["Grid", "Window", "odd", "prolong", "touches_rim", "window_around"]
-
 Array = NDArray[np.floating]
 
 

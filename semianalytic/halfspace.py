@@ -28,12 +28,6 @@ from numpy.typing import NDArray
 
 from semianalytic.arrays import BLOCK
 
-__all__ = [
-    "point_displacement",
-    "point_stress",
-    "surface_deflection",
-]
-
 Array = NDArray[np.floating]
 Field = Callable[[Array, Array, Array, float], tuple[Array, ...]]
 

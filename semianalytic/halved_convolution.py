@@ -16,8 +16,6 @@ import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["apply_even", "memory_size"]
-
 Array = NDArray[np.floating]
 Wave = NDArray[np.complexfloating]
 

@@ -29,8 +29,6 @@ from numpy.typing import NDArray
 from scipy.fft import fht
 from scipy.special import factorial
 
-__all__ = ["LONG", "NEAR", "USUAL", "LogGrid", "hankel", "log_grid", "near_axis"]
-
 Array = NDArray[Any]
 
 _STEP = np.log(3e10) / 1499

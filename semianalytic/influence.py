@@ -32,8 +32,6 @@ from semianalytic.arrays import BLOCK, strips
 from semianalytic.inputs import Body, Numerics
 from semianalytic.response import Response
 
-__all__ = ["plain_coefficients", "remainder_coefficients", "surface_coefficients"]
-
 Array = NDArray[np.floating]
 Function = Callable[[Array], Array]
 

@@ -10,17 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from semianalytic.response import Layers, Response, response
 
-__all__ = [
-    "COARSEST",
-    "Body",
-    "Numerics",
-    "check_control",
-    "check_finite",
-    "check_positive",
-    "check_truth_value",
-    "undeformed_gap",
-]
-
 COARSEST = 33  # patches a side of the coarsest grid
 
 

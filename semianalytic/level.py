@@ -15,8 +15,6 @@ from semianalytic.prescribed import Prescribed
 from semianalytic.rings import Disc, RingPressure, rings_of
 from semianalytic.smooth_edge import EdgePatches
 
-__all__ = ["Indenter", "Level", "LevelProblem"]
-
 Array = NDArray[np.floating]
 
 SINGLE = 2**20  # patches, above which preconditioner and steps are of single precision,

@@ -13,8 +13,6 @@ from semianalytic.grid import Grid
 from semianalytic.inputs import Body, Numerics, undeformed_gap
 from semianalytic.level import Indenter, Level
 
-__all__ = ["Neighbours", "Sphere", "hertz_radius"]
-
 Array = NDArray[np.floating]
 
 STEPS = 0.05, 0.1  # of the load, to the neighbouring contacts

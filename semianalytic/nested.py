@@ -11,8 +11,6 @@ from semianalytic.grid import Grid, Window, odd, touches_rim, window_around
 from semianalytic.inputs import COARSEST, Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
 
-__all__ = ["levels", "solve_on"]
-
 Array = NDArray[np.floating]
 
 STRIDE = 2.8  # of grids that only give the start: iterations on the next one are about as many as by halves

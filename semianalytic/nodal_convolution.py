@@ -15,16 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
-__all__ = [
-    "Influence",
-    "Lattice",
-    "at_points",
-    "between_sites",
-    "influence_table",
-    "nodal_forces",
-    "samples",
-]
-
 Array = NDArray[Any]
 Influence = Callable[[Array, Array], Array]  # of integer offsets (m, n), each (k,) -> (components, k)
 

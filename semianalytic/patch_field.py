@@ -37,8 +37,6 @@ from semianalytic.nodal_convolution import (
 from semianalytic.rings import Node
 from semianalytic.subsurface import DEPTHS, PointField, chebyshev, weights
 
-__all__ = ["FieldPlane", "displacement", "displacement_plane", "stress", "stress_plane", "tensor"]
-
 Array = NDArray[Any]
 
 SHALLOW = 3.0  # patches; above this depth a node is not yet a point force: aliases exp(-6 pi) = 7e-9

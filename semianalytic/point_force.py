@@ -34,19 +34,6 @@ from semianalytic.frf import Load, displacement_frf, stress_frf
 from semianalytic.hankel import NEAR, LogGrid, hankel, log_grid, near_axis
 from semianalytic.inputs import Body
 
-__all__ = [
-    "PointForce",
-    "combine_displacement",
-    "combine_stress",
-    "directions",
-    "displacement_below",
-    "displacement_columns",
-    "half_space_displacement",
-    "half_space_stress",
-    "stress_below",
-    "stress_columns",
-]
-
 Array = NDArray[Any]
 Field = Callable[[Array, Array], Array]
 Response = Callable[[Load], Array]

@@ -24,8 +24,6 @@ from scipy.interpolate import CubicSpline, PPoly, make_interp_spline
 
 from semianalytic import frf
 
-__all__ = ["Layers", "Response", "compliance_excess", "response"]
-
 Array = NDArray[np.floating]
 Function = Callable[[Array], Array]
 Layers = tuple[float, dict[str, Any]]

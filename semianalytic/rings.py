@@ -28,8 +28,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from semianalytic.edge_shape import Shape
 
-__all__ = ["Disc", "Node", "RingPressure", "Rings", "SmoothContour", "Twins", "rings_around", "rings_of"]
-
 Array = NDArray[np.floating]
 Step = Callable[[float], float]
 

@@ -20,8 +20,6 @@ from scipy.ndimage import distance_transform_cdt, maximum_filter
 from semianalytic.edge_shape import Shape
 from semianalytic.grid import Grid, Window
 
-__all__ = ["NEAR", "PARTS", "EdgePatches", "beyond_centres", "edge_patches", "near_influence", "patch_mean"]
-
 Array = NDArray[np.floating]
 Indices = NDArray[np.intp]
 

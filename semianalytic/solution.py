@@ -21,8 +21,6 @@ from semianalytic.level import Level
 from semianalytic.neighbours import Neighbours
 from semianalytic.uncertainty import Uncertainty, safety
 
-__all__ = ["Diagnostics", "Solution"]
-
 Array = NDArray[np.floating]
 
 # error of the stress below patches, over the peak pressure, against Hankel quadrature: above 4 patches, below

@@ -30,8 +30,6 @@ from semianalytic.neighbours import Neighbours, Sphere, hertz_radius
 from semianalytic.solution import Solution
 from semianalytic.uncertainty import WIDER, Uncertainty
 
-__all__ = ["indent", "solve", "solve_prescribed"]
-
 Array = NDArray[np.floating]
 Coatings = tuple[tuple[float, float, float], ...]
 Substrate = tuple[float, float]

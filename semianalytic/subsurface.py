@@ -34,18 +34,6 @@ from semianalytic.point_force import (
 )
 from semianalytic.rings import RingPressure, Rings, rings_around
 
-__all__ = [
-    "DEPTHS",
-    "PointField",
-    "Response",
-    "chebyshev",
-    "displacement",
-    "displacement_response",
-    "stress",
-    "stress_response",
-    "weights",
-]
-
 Array = NDArray[Any]
 
 PAIRS = 200_000  # points times rings held at a time
@@ -258,13 +246,10 @@ class _Tables:
         """(columns, n) at rho, z [m]."""
         lows = [low for low, *_ in self.groups]
         which = np.searchsorted(lows, z, side="right") - 1
-        out: Array | None = None
+        *_, (first, *_) = self.groups[0]
+        out = np.zeros((first.radial.c.shape[-1], rho.size))
         for k, (_, depths, tables) in enumerate(self.groups):
             here = np.flatnonzero(which == k)
-            if not here.size:
-                continue
-            if out is None:
-                out = np.zeros((tables[0].radial.c.shape[-1], rho.size))
             s = np.arcsinh(rho[here] / tables[0].scale)
             if self.between[k]:
                 nodes, reach = (np.log(np.abs(self.image - one)) for one in (depths, z[here]))
@@ -275,7 +260,6 @@ class _Tables:
                 for i, table in enumerate(tables):
                     at = nearest == i
                     out[:, here[at]] = table.radial(s[at]).T
-        assert out is not None
         return out
 
 

@@ -11,17 +11,6 @@ from semianalytic.grid import odd
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level
 
-__all__ = [
-    "WIDER",
-    "Uncertainty",
-    "change",
-    "is_met",
-    "is_stalled",
-    "of_contact",
-    "other_conversion",
-    "safety",
-]
-
 WIDER = 1.25  # the box that tests the domain over the box in use
 SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge
 # Times the change before of the contact radius, which the patches at the edge move to and fro; of its own in
