@@ -79,10 +79,7 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
     near, weight, convolutions = _near_influence(problem), grid.weight(gap.shape), 0
     step: Step | None = None
 
-    def deflection(field: Array) -> Array:
-        return np.array(problem.deflection(field))  # its own memory is used again
-
-    fit = partial(edge_shape.fitted, x=x, y=y, deflection=deflection, weight=weight, patch=grid.d)
+    fit = partial(edge_shape.fitted, x=x, y=y, deflection=problem.deflection, weight=weight, patch=grid.d)
     fresh = p is not None
     if p is None:  # f is smoother than the interpolated pressure of the patches
         p = problem.first_guess() if shape.outside else shape.pressure(x, y)
@@ -96,7 +93,7 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
         edge = smooth_edge.edge_patches(shape, p, grid, problem.window)
         if not edge.misfit < COARSE_MISFIT and number >= HELD:
             return None
-        u, missing = smooth_edge.beyond_centres(edge, p, grid, deflection, near)
+        u, missing = smooth_edge.beyond_centres(edge, p, grid, problem.deflection, near)
         if not abs(missing) < LOST * grid.force(p):
             return None
         problem.gap = gap + u

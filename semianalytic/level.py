@@ -17,11 +17,9 @@ from semianalytic.smooth_edge import EdgePatches
 
 Array = NDArray[np.floating]
 
-SINGLE = 2**20  # patches, above which preconditioner and steps are of single precision,
 SMOOTH = 0.01  # error of the radius at a smooth edge, over M d^2/a with M polynomials: observed at most 0.005
 RIPPLE = 3e-4  # of the peak pressure
 SAMPLED, FAR_INSIDE = 65, 0.6  # patches along a side, and 1 - (r/a)^2, for the misfit inside
-LOOSE = 1e-8  # at this tolerance or above: the iterations were measured to be as many; at 1e-12 more
 
 
 @dataclass(frozen=True)
@@ -173,7 +171,6 @@ class LevelProblem:
 
     gap [m] : on the window, above the level ``datum``.  depth [m] : the largest on the grid above that.
     before : level that gives the first guess, None for one from the gap.  deflection : u = A p on the window.
-    single : the steps are of single precision, as is u of them.
     """
 
     def __init__(
@@ -192,17 +189,9 @@ class LevelProblem:
         self.indenter, self.body, self.numerics, self.datum = indenter, body, numerics, datum
         nx, ny = grid.across(window).shape
         kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics)[:nx, :ny]
-        held, threads = grid.quarter, numerics.threads
-        memory: Array | None = None
-        inverse: Array | None = None
-        self.work: tuple[Array, Array] | None = None
-        if not held:
-            memory, inverse, self.work = _shared_memory(nx, ny, numerics.tolerance >= LOOSE)
-        self.single = memory is not None and memory.dtype == np.float32
-        self.deflection = convolution.even_convolution(kernel, quarter=held, threads=threads, memory=memory)
-        self.precondition = convolution.circulant_inverse(
-            kernel, quarter=held, threads=threads, memory=inverse
-        )
+        options = {"quarter": grid.quarter, "threads": numerics.threads}
+        self.deflection = convolution.even_convolution(kernel, **options)
+        self.precondition = convolution.circulant_inverse(kernel, **options)
 
     def solve(self, defect: Array | float, missing: float, start: Array | None = None) -> Level:
         """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches.
@@ -213,12 +202,12 @@ class LevelProblem:
         scale = indenter.approach or (before.found.approach if before else self.depth)
         # a flat punch has no depth; its approach is this to a factor of order one
         scale = scale or (indenter.load or 0.0) / (self.body.contact_modulus * grid.half_width)
-        found = contact.solve(
+        problem = contact.Problem(
             self.deflection,
             self.gap if isinstance(defect, float) else self.gap + defect,
             total=None if indenter.load is None else (indenter.load - missing) / grid.d**2,
             approach=None if indenter.approach is None else indenter.approach + self.datum,
-            start=self.first_guess if start is None else start,
+            start=self.first_guess if start is None else start.copy,
             precondition=self.precondition,
             scale=scale,
             tolerance=self.numerics.tolerance,
@@ -226,9 +215,8 @@ class LevelProblem:
             extension=_extension(self.body, grid.d),
             weight=grid.weight(self.gap.shape),
             mirror="mirror" if grid.n % 2 else "reflect",
-            work=self.work,
-            deflection_into=self.deflection if self.single else None,
         )
+        found = contact.solve(problem)
         found = replace(found, approach=found.approach - self.datum)
         load = grid.force(found.pressure) + missing
         # p = E* k u / 2, k at most that of a checkerboard, sqrt(2) pi / d
@@ -246,24 +234,9 @@ class LevelProblem:
         before = self.before
         if before is None:
             approach = self.indenter.approach or 0.25 * self.depth
-            p = self.precondition(np.maximum(np.min(self.gap) + approach - self.gap, 0.0))
-            return np.array(p, np.float64, order="C")  # not in memory that the iteration uses
+            return self.precondition(np.maximum(np.min(self.gap) + approach - self.gap, 0.0))
         p, g, E_star = before.found.pressure, before.found.gap, self.body.contact_modulus
         return prolong(p, g, before.grid, self.grid, self.window, E_star)
-
-
-def _shared_memory(nx: int, ny: int, loose: bool) -> tuple[Array, Array, tuple[Array, Array]]:
-    """Memory of the convolution; parts of it for the preconditioner, for the work of the iteration.
-
-    The convolution is never in use together with the others. All are single above ``SINGLE`` patches where
-    the tolerance is ``loose``. The preconditioner takes and returns the second part of the work.
-    """
-    single, own = loose and nx * ny > SINGLE, nx * ny
-    size = own + convolution.memory_size(nx, ny, padded=False)
-    padded = convolution.memory_size(nx, ny, padded=True, single=single)
-    memory: Array = np.empty(max(padded, size), np.float32 if single else np.float64)
-    inverse = memory[own:size]
-    return memory, inverse, (memory[:own].reshape(nx, ny), inverse[:own].reshape(nx, ny))
 
 
 def _above_highest(p: Array) -> float:
