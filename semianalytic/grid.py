@@ -14,8 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
-from semianalytic.arrays import blocks, strips, total
-
 Array = NDArray[np.floating]
 
 
@@ -59,7 +57,7 @@ class Grid:
     def force(self, pressure: Array) -> float:
         """Force of a pressure on a window of the patches held [N]."""
         w = self.weight(pressure.shape)
-        return total(pressure if w is None else w * pressure) * self.d**2
+        return float(np.sum(pressure if w is None else w * pressure)) * self.d**2
 
     def count(self, marked: NDArray[np.bool_]) -> int:
         """Patches marked by those held on a window."""
@@ -236,9 +234,7 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     level[beside] = -K2 * (np.maximum(outside, 0.0) * (0.75 * E_star) / K2**0.5) ** (2 / 3)
     rows, columns = window.slices
     level = _linear(_linear(level, source, target.x[rows]).T, source, target.x[columns])
-    for part in blocks(level):
-        level[part] = np.sqrt(np.maximum(level[part], 0.0))
-    return level.T
+    return np.sqrt(np.maximum(level, 0.0)).T
 
 
 def touches_rim(pressure: Array, quarter: bool = False, rings: int = 1) -> bool:
@@ -249,14 +245,11 @@ def touches_rim(pressure: Array, quarter: bool = False, rings: int = 1) -> bool:
 
 def _linear(values: Array, source: Grid, x: Array) -> Array:
     """Linear interpolation along the first index, from the patch centres of the source to x; 0 beyond it."""
-    n, width = values.shape
+    n = len(values)
     at = np.clip((x - source.x[0]) / source.d, 0, n - 1)
     i = np.minimum(at.astype(int), n - 2)
     t = (at - i)[:, None]
-    result: Array = np.empty((len(x), width))
-    for part in strips(len(x), width):
-        low, high = values[i[part]], values[i[part] + 1]
-        result[part, :] = low * (1 - t[part]) + high * t[part]
+    result: Array = values[i] * (1 - t) + values[i + 1] * t
     result[: np.searchsorted(x, -source.half_width), :] = 0.0
     result[np.searchsorted(x, source.half_width, side="right") :, :] = 0.0
     return result

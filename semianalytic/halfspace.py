@@ -26,8 +26,6 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic.arrays import BLOCK
-
 Array = NDArray[np.floating]
 Field = Callable[[Array, Array, Array, float], tuple[Array, ...]]
 
@@ -57,67 +55,53 @@ def _points(normal: Field, shear: Field, x: Array, y: Array, z: Array, nu: float
     return np.array([of_normal, shear(x, y, z, nu) if tangential else np.zeros_like(of_normal)])
 
 
-def surface_deflection(nx: int, ny: int, dx: float, dy: float, depth: float = 0.0) -> Array:
-    """Potential V of a rectangle at the centres of a grid of rectangles.
+def surface_deflection(n: int, d: float, depth: float = 0.0) -> Array:
+    """Potential V of a square of side d at the centres of a grid of squares.
 
-        V(i dx, j dy, depth),  i = 0..nx-1, j = 0..ny-1;   u_z = (1-nu)/(2 pi G) V at depth 0
+        V(i d, j d, depth),  i, j = 0..n-1;   u_z = (1-nu)/(2 pi G) V at depth 0
 
-    Nearer than ``FAR`` sides Love (1929) eq. 4, with every corner value used by the four rectangles that
-    share it. Beyond, 1/rho and its even derivatives of orders 2, 4 times the moments of the rectangle: no
+    Nearer than ``FAR`` sides Love (1929) eq. 4, with every corner value used by the four squares that share
+    it. Beyond, 1/rho and its even derivatives of orders 2, 4 times the moments of the square: no
     cancellation, within 5e-12 of every entry however large the table.
 
-    nx, ny : entries.  dx, dy, depth [m].  Returns V [m], shape (nx, ny).
+    d, depth [m].  Returns V [m], shape (n, n).
     """
-    V: Array = np.empty((nx, ny))
-    reach = np.sqrt(max((FAR * max(dx, dy)) ** 2 - depth**2, 0.0))
-    mx, my = min(int(np.ceil(reach / dx)), nx), min(int(np.ceil(reach / dy)), ny)
-    X = (np.arange(mx + 1, dtype=np.float64) - 0.5) * dx
-    Y = (np.arange(my + 1, dtype=np.float64) - 0.5) * dy
-    corner = _potential_corner(X[:, None], Y[None, :], np.array(depth))
-    column = corner[1:, :] - corner[:-1, :]
-    V[:mx, :my] = column[:, 1:] - column[:, :-1]
-    y = np.arange(ny, dtype=np.float64) * dy
-    rows = max(1, BLOCK // ny)
-    symmetric = nx == ny and dx == dy
-    for begin, end, first in ((0, mx, my), (mx, nx, 0)):
-        for i in range(begin, end, rows):
-            j = min(i + rows, end)
-            x = np.arange(i, j, dtype=np.float64) * dx
-            left = max(first, i) if symmetric else first
-            V[i:j, left:] = _potential_series(x[:, None], y[None, left:], depth, dx, dy)
-            if symmetric and i >= mx:  # V(x, y) = V(y, x)
-                V[i:j, :i] = V[:i, i:j].T
+    V: Array = np.empty((n, n))
+    near = min(int(np.ceil(np.sqrt(max((FAR * d) ** 2 - depth**2, 0.0)) / d)), n)
+    i, j = np.triu_indices(n)
+    far = j >= near
+    i, j = i[far], j[far]
+    V[i, j] = V[j, i] = _potential_series(i * d, j * d, depth, d * d)
+    X = (np.arange(near + 1) - 0.5) * d
+    corner = _potential_corner(X[:, None], X[None, :], depth)
+    V[:near, :near] = np.diff(np.diff(corner, axis=0), axis=1)
     return V
 
 
-def _potential_series(x: Array, y: Array, z: float, dx: float, dy: float) -> Array:
-    """V to the fourth moments of the rectangle: the mean of a Taylor series of 1/rho, by Horner in rho^-2."""
-    a, b, x2, y2 = dx * dx, dy * dy, x * x, y * y
+def _potential_series(x: Array, y: Array, z: float, a: float) -> Array:
+    """V to the fourth moments of a square of area a: the mean of a Taylor series of 1/rho, by Horner in
+    rho^-2."""
+    x2, y2 = x * x, y * y
     s = 1 / (x2 + (y2 + z * z))
-    sum_ = (105 / 1920 * a * a) * x2 * x2 + (105 / 1920 * b * b) * y2 * y2
-    sum_ += (105 / 576 * a * b * x2) * y2
-    for cx, cy, c in (
-        (-(a / 1920 * 90 + b / 576 * 15) * a, -(b / 1920 * 90 + a / 576 * 15) * b, 0.0),
-        (a / 8, b / 8, (a * a + b * b) * 9 / 1920 + a * b * 3 / 576),
-        (0.0, 0.0, -(a + b) / 24),
-        (0.0, 0.0, 1.0),
+    sum_ = (105 / 1920 * a * a) * x2 * x2 + (105 / 1920 * a * a) * y2 * y2
+    sum_ += (105 / 576 * a * a * x2) * y2
+    for of_square, constant in (
+        (-(a / 1920 * 90 + a / 576 * 15) * a, 0.0),
+        (a / 8, (a * a + a * a) * 9 / 1920 + a * a * 3 / 576),
+        (0.0, -(a + a) / 24),
+        (0.0, 1.0),
     ):
         sum_ *= s
-        sum_ += cx * x2 + (cy * y2 + c)
+        sum_ += of_square * x2 + (of_square * y2 + constant)
     sum_ *= np.sqrt(s)
-    sum_ *= dx * dy
+    sum_ *= a
     return sum_
 
 
-def _lengths(X: Array, Y: Array, z: Array) -> tuple[Array, Array, Array]:
-    """rho, X^2 + z^2 and Y^2 + z^2, floored."""
-    sx, sy = np.maximum(X * X + z * z, TINY), np.maximum(Y * Y + z * z, TINY)
-    return np.sqrt(np.maximum(sx + Y * Y, TINY)), sx, sy
-
-
-def _potential_corner(X: Array, Y: Array, z: Array) -> Array:
+def _potential_corner(X: Array, Y: Array, z: float) -> Array:
     """V."""
-    rho, sx, sy = _lengths(X, Y, z)
+    sx, sy = np.maximum(X * X + z * z, TINY), np.maximum(Y * Y + z * z, TINY)
+    rho = np.sqrt(np.maximum(sx + Y * Y, TINY))
     V: Array = X * np.asinh(Y / np.sqrt(sx)) + Y * np.asinh(X / np.sqrt(sy)) - z * np.atan2(X * Y, z * rho)
     return V
 

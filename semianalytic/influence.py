@@ -21,14 +21,12 @@ plain      M/k times the transform of the patch, aliases summed, FFT on an enlar
 """
 
 from collections.abc import Callable
-from math import isqrt
 
 import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import halfspace
-from semianalytic.arrays import BLOCK, strips
 from semianalytic.inputs import Body, Numerics
 from semianalytic.response import Response
 
@@ -51,13 +49,13 @@ def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Ar
         excess = both.excess if both else np.zeros_like
         K = plain_coefficients(n, d, excess, enlarge=enlarge, threads=threads)
     else:
-        K = halfspace.surface_deflection(n, n, d, d)
+        K = halfspace.surface_deflection(n, d)
         if both:
             enlarge = enlarge if numerics.conversion == "split-fft" else 0
             points = numerics.hankel_points
             K += remainder_coefficients(n, d, both, points=points, enlarge=enlarge, threads=threads)
             c, b = both.image
-            of_image = halfspace.surface_deflection(n, n, d, d, b)
+            of_image = halfspace.surface_deflection(n, d, b)
             of_image *= c
             K += of_image
     K *= 1 / (np.pi * body.contact_modulus)
@@ -93,7 +91,7 @@ def remainder_coefficients(
 
     g, on_disc = response.radial(points)
     near = 2 * response.first / d  # g is singular no nearer than the image of the surface, at depth 2 h
-    mean = _average(_average(_octant(g, n + 3, d)).T).T[:n, :n]
+    mean = _average(_average(_octant(g, n + 3, d)).T).T
     mean *= d * d
     if near < SMOOTH:
         corner = _corner(g, on_disc, min(int(SMOOTH), n), d, near)
@@ -156,21 +154,17 @@ def _by_fft(
 
 
 def _octant(g: Callable[[Array], Array], n: int, d: float) -> Array:
-    """g at the patch centres, computed in blocks of rows, in each up to its diagonal."""
+    """g at the patch centres, computed up to the diagonal."""
     table: Array = np.empty((n, n))
-    i, end = np.arange(n, dtype=np.float64), 0
-    while end < n:
-        begin, end = end, min(n, end + max(1, BLOCK // (end + isqrt(BLOCK))))
-        block = g(d * np.hypot(i[begin:end, None], i[None, :end]))
-        table[begin:end, :end] = block
-        table[:end, begin:end] = block.T
+    i, j = np.tril_indices(n)
+    table[i, j] = table[j, i] = g(d * np.hypot(i, j))
     return table
 
 
 def _average(table: Array) -> Array:
-    """Mean over a patch along the first index, in place: (delta/2)/asinh(delta/2) to sixth differences.
+    """Mean over a patch along the first index: (delta/2)/asinh(delta/2) to sixth differences.
 
-    The last three rows, whose neighbours are not in the table, lose their meaning. Returns the table.
+    Of all rows but the last three, whose neighbours are not in the table.
     """
     weights = np.array([1.0, 0, 0, 0])
     for factor, row in (
@@ -181,14 +175,11 @@ def _average(table: Array) -> Array:
         weights += factor * np.array(row)
     first, *others = weights.tolist()
     n = table.shape[0] - 3
-    for columns in strips(table.shape[1], table.shape[0]):
-        strip = table[:, columns]
-        rows = np.concat([strip[3:0:-1, :], strip])
-        mean = rows[3 : n + 3, :] * first
-        for j, weight in enumerate(others, start=1):
-            mean += weight * (rows[3 - j : n + 3 - j, :] + rows[3 + j : n + 3 + j, :])
-        table[:n, columns] = mean
-    return table
+    rows = np.concat([table[3:0:-1], table])
+    mean = table[:n] * first
+    for j, weight in enumerate(others, start=1):
+        mean += weight * (rows[3 - j : n + 3 - j] + rows[3 + j : n + 3 + j])
+    return mean
 
 
 def _gauss_block(

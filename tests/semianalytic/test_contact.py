@@ -9,7 +9,7 @@ from semianalytic.inputs import Body, Numerics
 N, D = 65, 2.4 / 65  # Hertz with E* = R = a = 1 on [-1.2, 1.2]^2
 X = (np.arange(N) - N // 2) * D
 R2 = X[:, None] ** 2 + X[None, :] ** 2
-KERNEL = halfspace.surface_deflection(N, N, D, D) / np.pi
+KERNEL = halfspace.surface_deflection(N, D) / np.pi
 A = convolution.even_convolution(KERNEL)
 LOAD = 4 / 3
 START = np.where(R2 < 1.3, 1.0, 0.0)
@@ -86,7 +86,7 @@ def test_iterations_hardly_grow_with_the_grid():
     counts = []
     for n in (65, 257):
         d, r2 = sphere(n)
-        kernel = halfspace.surface_deflection(n, n, d, d) / np.pi
+        kernel = halfspace.surface_deflection(n, d) / np.pi
         start = np.sqrt(np.maximum(1 - r2, 0))
         found = contact_of(r2 / 2, kernel, total=LOAD / d**2, start=start, tolerance=1e-8, max_iterations=100)
         counts.append(found.iterations)
@@ -112,7 +112,7 @@ def test_directions_stay_conjugate_though_the_residual_is_extended():
 
 def test_directions_are_conjugate_on_a_fixed_contact_set():
     # 81 patches, all in contact: in exact arithmetic as many steps as there are distinct eigenvalues, 15
-    kernel, flat = halfspace.surface_deflection(9, 9, 0.1, 0.1), np.zeros((9, 9))
+    kernel, flat = halfspace.surface_deflection(9, 0.1), np.zeros((9, 9))
     options = {"total": 1.0, "start": flat + 1, "precondition": np.copy, "tolerance": 1e-12}
     assert contact_of(flat, kernel, **options, max_iterations=100).iterations <= 16
 
