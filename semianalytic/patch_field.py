@@ -190,15 +190,12 @@ def _influence(point: PointField, z: float, d: float, near: Array | None, m: Arr
 
 
 def _stress_field(body: Body) -> _Field:
-    response = subsurface.stress_response(body.materials[0][1], body)
-    point = partial(PointField.of, body=body, response=response)
+    point = partial(PointField.of, response=subsurface.stress_response(body))
     return _Field(partial(subsurface.stress, body=body), point, 6, odd_in_y=(3, 5))
 
 
 def _displacement_field(body: Body) -> _Field:
-    E, nu, *_ = body.materials[0]
-    response = subsurface.displacement_response(E, nu, body)
-    point = partial(PointField.of, body=body, response=response)
+    point = partial(PointField.of, response=subsurface.displacement_response(body))
     return _Field(partial(subsurface.displacement, body=body), point, 3, odd_in_y=(1,))
 
 

@@ -7,14 +7,33 @@ import pytest
 from scipy.integrate import dblquad
 
 from semianalytic import halfspace
+from semianalytic.point_force import (
+    combine_displacement,
+    combine_stress,
+    directions,
+    half_space_displacement,
+    half_space_stress,
+)
 
-NU = 0.3
 SIX = ([0, 3, 4], [3, 1, 5], [4, 5, 2])
 
 
+def of_forces(radial, combine, x, y):
+    """Components of a normal and of a tangential unit force from the radial functions of both."""
+    r = np.hypot(x, y)
+    harmonics = directions(np.asarray(x / r), np.asarray(y / r))
+    normal, both = (combine(radial, harmonics, friction) for friction in (0.0, 1.0))
+    return np.stack([normal, both - normal])
+
+
 def stress(x, y, z, nu):
-    """Tensors of a normal and of a tangential unit force."""
-    return halfspace.point_stress(*map(np.float64, (x, y, z)), nu)[:, SIX]
+    return of_forces(half_space_stress(np.hypot(x, y), z, nu, 1.0), combine_stress, x, y)[:, SIX]
+
+
+def displacement(x, y, z, nu):
+    """Under E = 1."""
+    radial = half_space_displacement(np.hypot(x, y), z, 1.0, nu, 1.0)
+    return of_forces(radial, combine_displacement, x, y)
 
 
 @pytest.mark.parametrize("place", [(0, 0), (1, 0), (3, 2)])
@@ -57,7 +76,7 @@ def test_stress_balances_and_carries_the_force(nu):
             cosine[:, None] + 0 * angle,
         ]
     )
-    sigma = halfspace.point_stress(*n.reshape(3, -1), nu)[:, SIX].reshape(2, 3, 3, 40, 40)
+    sigma = stress(*n.reshape(3, -1), nu).reshape(2, 3, 3, 40, 40)
     force = np.einsum("fijpq,jpq,p->fi", sigma, n, w / 2) * 2 * np.pi / 40
     np.testing.assert_allclose(force, [[0, 0, -1], [-1, 0, 0]], atol=1e-9)
 
@@ -70,8 +89,7 @@ def test_stress_is_hooke_of_the_displacement(nu):
         for k, c in ((1, 2 / 3), (2, -1 / 12)):
             step = np.zeros(3)
             step[axis] = k * h
-            up = halfspace.point_displacement(*(centre + step), E, nu)
-            down = halfspace.point_displacement(*(centre - step), E, nu)
+            up, down = (displacement(*(centre + sign * step), nu) for sign in (1, -1))
             gradient[:, :, axis] += c * (up - down) / h
     strain = (gradient + gradient.swapaxes(1, 2)) / 2
     G, lam = E / (2 * (1 + nu)), E * nu / ((1 + nu) * (1 - 2 * nu))
@@ -82,9 +100,7 @@ def test_stress_is_hooke_of_the_displacement(nu):
 
 def test_reciprocity_of_normal_and_tangential_force():
     # u_x at B under a normal force at A is u_z at A under a force in x at B (Betti)
-    place = np.array([3.0, -2.0, 0.0])
-    forth = halfspace.point_displacement(*place, 1.0, NU)[0, 0]
-    back = halfspace.point_displacement(*(-place), 1.0, NU)[1, 2]
+    forth, back = displacement(3.0, -2.0, 0.0, 0.3)[0, 0], displacement(-3.0, 2.0, 0.0, 0.3)[1, 2]
     assert forth == pytest.approx(back, rel=1e-12, abs=0)
 
 
