@@ -12,7 +12,6 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import RectBivariateSpline
 
 Array = NDArray[np.floating]
 
@@ -152,19 +151,6 @@ class Grid:
         """The patches of ``merged`` that have a part of a window."""
         i1, j1 = (-(-(end + self._shared) // 2) for end in (window.i1, window.j1))
         return Window(window.i0 // 2, i1, window.j0 // 2, j1)
-
-    def sample(self, heights: Array, half_width: float) -> Array:
-        """Heights given on m x m patches that fill the square of ``half_width``, at these patch centres.
-
-        Between the given centres a linear interpolation, beyond the last ones the last ones.
-        """
-        m = heights.shape[0]
-        if m == self.n:
-            return heights
-        given = Grid(m, 2 * half_width / m).x
-        spline = RectBivariateSpline(given, given, heights, kx=1, ky=1)
-        x = np.clip(self.x, given[0], given[-1])
-        return spline(x, x)
 
 
 def odd(n: float) -> int:

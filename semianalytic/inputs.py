@@ -18,43 +18,31 @@ class Numerics:
     """Numerical parameters; the uncertainty covers those that change a result.
 
     patches : per side of the finest grid.  tolerance : gap and penetration over the approach.
-    conversion : "split", with ``hankel_points``; "split-fft" or "plain", with ``enlarge``.
-    fill : half-width of the grid over the contact radius.
-    edge_correction : False for the patches alone.
+    conversion : "split", with ``hankel_points``, or "plain".
     """
 
     patches: int = 257
     tolerance: float = 1e-8
     max_iterations: int = 600
     conversion: str = "split"
-    hankel_points: int = 4096
-    enlarge: int = 4
-    fill: float = 1.12
-    edge_correction: bool = True
     threads: int = 1
+    hankel_points: int = 4096
 
     def __post_init__(self) -> None:
-        for name in ("patches", "max_iterations", "hankel_points", "enlarge", "threads"):
+        for name in ("patches", "max_iterations", "threads"):
             value = getattr(self, name)
             if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
                 raise ValueError(f"{name} = {value!r}; it has to be an integer")
-        for name in ("tolerance", "fill"):
-            if not _is_number(getattr(self, name)):
-                raise ValueError(f"{name} = {getattr(self, name)!r}; it has to be a number")
-        if self.patches < COARSEST or (self.patches % 2 == 0 and self.edge_correction):
+            if value < 1:
+                raise ValueError(f"{name} = {value}; it must be at least 1")
+        if not _is_number(self.tolerance):
+            raise ValueError(f"tolerance = {self.tolerance!r}; it has to be a number")
+        if self.patches < COARSEST:
             raise ValueError(f"patches = {self.patches}; it must be odd and at least {COARSEST}")
         if not 1e-13 <= self.tolerance < 1:
             raise ValueError(f"tolerance = {self.tolerance:g}; give 1e-13 or more, 1e-8 is the default")
-        if self.conversion not in ("split", "split-fft", "plain"):
-            raise ValueError(f"conversion = {self.conversion!r}; choose split, split-fft or plain")
-        if not 1.05 <= self.fill <= 10:
-            raise ValueError(f"fill = {self.fill:g}; the grid must exceed the contact, give 1.05 to 10")
-        for name in ("max_iterations", "enlarge", "threads"):
-            if getattr(self, name) < 1:
-                raise ValueError(f"{name} = {getattr(self, name)}; it must be at least 1")
-        if self.hankel_points < 512:
-            raise ValueError(f"hankel_points = {self.hankel_points}; give 512 or more, 4096 is the default")
-        check_truth_value(edge_correction=self.edge_correction)
+        if self.conversion not in ("split", "plain"):
+            raise ValueError(f"conversion = {self.conversion!r}; choose split or plain")
 
 
 @dataclass(frozen=True)
@@ -198,6 +186,12 @@ def check_finite(**values: float) -> None:
     for name, value in values.items():
         if not (_is_number(value) and np.isfinite(value)):
             raise ValueError(f"{name} = {value!r}; it has to be a finite number")
+
+
+def check_odd(patches: int) -> None:
+    """Raise ValueError for a grid without a patch in its middle."""
+    if patches % 2 == 0:
+        raise ValueError(f"patches = {patches}; it must be odd and at least {COARSEST}")
 
 
 def check_truth_value(**values: bool) -> None:

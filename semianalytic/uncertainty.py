@@ -203,7 +203,7 @@ def _of_iteration(level: Level, indenter: Indenter) -> dict[str, float]:
 
 
 def other_conversion(numerics: Numerics) -> Numerics:
-    """Numerics to compare the conversion with: half its points, or the better conversion if there is one."""
+    """Numerics to compare the conversion with: half its points, or the better conversion."""
     if numerics.conversion == "split":
         return replace(numerics, hankel_points=numerics.hankel_points // 2)
     return replace(numerics, conversion="split")

@@ -101,23 +101,6 @@ def test_split_coefficients_are_the_quadrature_at_both_ends_of_poissons_ratio(ra
         assert C[i, j] == pytest.approx(by_quadrature(i, j, 1.0, excess, 3.0), abs=1e-7 * largest)
 
 
-def test_fft_conversion_approaches_the_split_as_the_domain_grows():
-    coatings = stack(4.0, 6.0, 1)
-
-    def excess(k):
-        return frf.compliance_excess(k, coatings, SUBSTRATE)
-
-    film = Response(excess, 6.0, 6.0)
-    exact = influence.remainder_coefficients(32, 1.0, film)
-    errors = [
-        np.abs(influence.remainder_coefficients(32, 1.0, film, enlarge=e) - exact).max() for e in (2, 4, 8)
-    ]
-    love = halfspace.surface_deflection(1, 1.0)[0, 0]
-    assert errors[2] < errors[1] < errors[0]
-    # the tail of R falls as r^-3, its images on the periodic domain as enlarge^-2 or better
-    assert errors[2] < 2e-4 * love
-
-
 def test_plain_conversion_has_the_error_it_is_known_for():
     love = halfspace.surface_deflection(64, 1.0)
     plain = influence.plain_coefficients(64, 1.0, np.zeros_like, enlarge=4)

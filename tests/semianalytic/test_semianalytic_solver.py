@@ -37,11 +37,6 @@ def sliding():
     return solve(STIFF, friction=0.25)
 
 
-@pytest.fixture(scope="module")
-def uncorrected():
-    return solve(STIFF, edge_correction=False)
-
-
 @pytest.mark.parametrize("coatings", [(), ((E, NU, 0.3 * A_H),), ((E, NU, 0.1 * A_H), (E, NU, A_H))])
 def test_equal_moduli_give_hertz(coatings):
     s = solve(coatings)
@@ -235,13 +230,12 @@ def test_uncertainty_not_estimated_is_refused():
         s.stress_uncertainty(0.0, 0.0, 0.0)
 
 
-@pytest.mark.parametrize(("conversion", "worse_than"), [("split-fft", 1e-6), ("plain", 1e-4)])
-def test_other_conversions_are_worse_and_say_so(uncorrected, conversion, worse_than):
-    best = uncorrected
-    other = solve(STIFF, edge_correction=False, conversion=conversion, estimate_uncertainty=True)
+def test_the_plain_conversion_is_worse_and_says_so():
+    best = solve(STIFF, edge_correction=False)
+    other = solve(STIFF, edge_correction=False, conversion="plain", estimate_uncertainty=True)
     assert other.uncertainty is not None
     error = abs(other.approach - best.approach)
-    assert error > worse_than * best.approach
+    assert error > 1e-4 * best.approach
     rows = {row[1]: row[2] for row in other.uncertainty.budget if row[0] == "approach"}
     # estimated on half the patches, from the better conversion
     assert rows["conversion"] == pytest.approx(error, rel=0.5, abs=0)
@@ -421,11 +415,6 @@ def test_a_sphere_given_as_a_profile_is_the_sphere():
     s = indent(lambda x, y: (x**2 + y**2) / (2 * R), 1.2 * A_H)
     assert s.approach == pytest.approx(A_H**2 / R, rel=2e-5)
     assert s.peak_pressure == pytest.approx(P_H, rel=5e-5)
-    x = (np.arange(129) - 64) * (2.4 * A_H / 129)
-    heights = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * R)
-    array = indent(heights, 1.2 * A_H)
-    # the same gap on the finest grid; the coarser ones start the shape, whose rounds leave 1e-4 of a change
-    assert array.approach == pytest.approx(s.approach, rel=5e-7, abs=0)
 
 
 @pytest.fixture(scope="module")
@@ -502,7 +491,6 @@ def test_stopping_short_raises():
         ({"tolerance": "1e-8"}, "tolerance = '1e-8'"),
         ({"tolerance": 0.0}, "tolerance = 0"),
         ({"conversion": "magic"}, "conversion = 'magic'"),
-        ({"fill": 1.0}, "fill = 1"),
     ],
 )
 def test_meaningless_input_is_refused_with_a_message(changes, message):
