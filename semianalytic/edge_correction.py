@@ -44,17 +44,15 @@ def corrected(problem: LevelProblem, start: Shape | None) -> Level:
 
     start : shape on a coarser grid, None for that of the patches alone.
     """
-    gap = problem.gap
     before = problem.before
     if before is not None and start is not None and start.outside:
         start = None if min(start.axes) < FEW_PATCHES * before.grid.d else start
     if start is not None:
         terms = OUTER_TERMS if start.outside else _terms(start, problem.grid.d)
-        level = _rounds(problem, gap, start.with_terms(terms), None)
+        level = _rounds(problem, start.with_terms(terms), None)
         if level is not None:
             return level
-    problem.gap = gap
-    alone = problem.solve(0.0, 0.0)
+    alone = problem.solve()
     p = alone.found.pressure
     shape = _start(problem, p)
     if shape is None:
@@ -62,21 +60,20 @@ def corrected(problem: LevelProblem, start: Shape | None) -> Level:
     # all of the pressure or, where its inside is not smooth, what is near the edge
     outside = () if problem.indenter.round else (replace(shape.with_terms(OUTER_TERMS), outside=True),)
     for first in (shape, *outside):
-        level = _rounds(problem, gap, first, p)
+        level = _rounds(problem, first, p)
         if level is not None:
             return replace(level, convolutions=level.convolutions + alone.convolutions)
-    problem.gap = gap
     return alone
 
 
-def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) -> Level | None:
+def _rounds(problem: LevelProblem, shape: Shape, p: Array | None) -> Level | None:
     """Rounds of fit and contact from a shape; None where the edge that they find is not that of the patches.
 
     p : pressure of the patches alone [Pa], to which the shape is fitted first; None for a shape that is
     fitted.
     """
     grid, (x, y) = problem.grid, problem.centres
-    near, weight, convolutions = _near_influence(problem), grid.weight(gap.shape), 0
+    near, weight, convolutions = _near_influence(problem), grid.weight(problem.gap.shape), 0
     step: Step | None = None
 
     fit = partial(edge_shape.fitted, x=x, y=y, deflection=problem.deflection, weight=weight, patch=grid.d)
@@ -96,9 +93,7 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
         u, missing = smooth_edge.beyond_centres(edge, p, grid, problem.deflection, near)
         if not abs(missing) < LOST * grid.force(p):
             return None
-        problem.gap = gap + u
-        del edge, u  # two hundred numbers a patch at the edge, which the iteration does not need
-        level = problem.solve(0.0, missing, start=p)
+        level = problem.solve(u, missing, start=p)
         convolutions += level.convolutions + 1
         p = level.found.pressure
         if fresh and number < HELD:

@@ -114,44 +114,6 @@ class Grid:
             ringed[:, 0] = ringed[:, image]
         return ringed
 
-    @property
-    def _shared(self) -> int:
-        """1 where patches of twice the side share others with their neighbours: one is at the origin."""
-        return int(self.quarter and self.n % 2)
-
-    def merged(self, p: Array) -> Array:
-        """Pressure of the same load [Pa] on patches of twice the side, those at the origin even as p."""
-        for _ in range(2):
-            if self._shared:
-                p = np.pad(p, ((0, 1 - len(p) % 2), (0, 0)))
-                sides = p[1::2] / 4
-                p = p[::2] / 2
-                p[0] += sides[0]
-                p[1:] += sides[: len(p) - 1]
-                p[: len(sides)] += sides
-            else:
-                p = _with_even_rows(p, 0.0 * p[-1:, :])
-                p = (p[::2, :] + p[1::2, :]) / 2
-            p = p.T
-        return p
-
-    def lowest(self, gap: Array) -> Array:
-        """Smallest gap on the patches of ``merged``."""
-        for _ in range(2):
-            if self._shared:
-                gap = np.pad(gap, ((1, 2 - len(gap) % 2), (0, 0)), mode="reflect")
-                gap = np.minimum(np.minimum(gap[:-2:2], gap[1:-1:2]), gap[2::2])
-            else:
-                gap = _with_even_rows(gap, gap[-1:, :])
-                gap = np.minimum(gap[::2, :], gap[1::2, :])
-            gap = gap.T
-        return gap
-
-    def merging(self, window: "Window") -> "Window":
-        """The patches of ``merged`` that have a part of a window."""
-        i1, j1 = (-(-(end + self._shared) // 2) for end in (window.i1, window.j1))
-        return Window(window.i0 // 2, i1, window.j0 // 2, j1)
-
 
 def odd(n: float) -> int:
     """Nearest odd integer, at least 3."""
@@ -239,8 +201,3 @@ def _linear(values: Array, source: Grid, x: Array) -> Array:
     result[: np.searchsorted(x, -source.half_width), :] = 0.0
     result[np.searchsorted(x, source.half_width, side="right") :, :] = 0.0
     return result
-
-
-def _with_even_rows(a: Array, below: Array) -> Array:
-    """An array of an even number of rows, ``below`` the last one where that is odd."""
-    return np.concat([a, below]) if a.shape[0] % 2 else a

@@ -166,34 +166,44 @@ class Level:
         return rest if np.abs(rest).max() > RIPPLE * self.found.pressure.max() else None
 
 
+@dataclass(frozen=True, eq=False)
 class LevelProblem:
     """Contact problem of the indenter on a window of the grid.
 
     gap [m] : on the window, above the level ``datum``.  depth [m] : the largest on the grid above that.
-    before : level that gives the first guess, None for one from the gap.  deflection : u = A p on the window.
+    before : level that gives the first guess, None for one from the gap.
     """
 
-    def __init__(
-        self,
-        grid: Grid,
-        gap: Array,
-        depth: float,
-        window: Window,
-        before: Level | None,
-        indenter: Indenter,
-        body: Body,
-        numerics: Numerics,
-        datum: float = 0.0,
-    ) -> None:
-        self.grid, self.gap, self.depth, self.window, self.before = grid, gap, depth, window, before
-        self.indenter, self.body, self.numerics, self.datum = indenter, body, numerics, datum
-        nx, ny = grid.across(window).shape
-        kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics)[:nx, :ny]
-        options = {"quarter": grid.quarter, "threads": numerics.threads}
-        self.deflection = convolution.even_convolution(kernel, **options)
-        self.precondition = convolution.circulant_inverse(kernel, **options)
+    grid: Grid
+    gap: Array
+    depth: float
+    window: Window
+    before: Level | None
+    indenter: Indenter
+    body: Body
+    numerics: Numerics
+    datum: float = 0.0
 
-    def solve(self, defect: Array | float, missing: float, start: Array | None = None) -> Level:
+    @cached_property
+    def _kernel(self) -> Array:
+        nx, ny = self.grid.across(self.window).shape
+        return influence.surface_coefficients(max(nx, ny), self.grid.d, self.body, self.numerics)[:nx, :ny]
+
+    @cached_property
+    def deflection(self) -> contact.Operator:
+        """u = A p on the window."""
+        return convolution.even_convolution(
+            self._kernel, quarter=self.grid.quarter, threads=self.numerics.threads
+        )
+
+    @cached_property
+    def precondition(self) -> contact.Operator:
+        """An approximate inverse of A."""
+        return convolution.circulant_inverse(
+            self._kernel, quarter=self.grid.quarter, threads=self.numerics.threads
+        )
+
+    def solve(self, defect: Array | float = 0.0, missing: float = 0.0, start: Array | None = None) -> Level:
         """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches.
 
         start : first guess of the pressure [Pa], None for `first_guess`.
@@ -204,7 +214,7 @@ class LevelProblem:
         scale = scale or (indenter.load or 0.0) / (self.body.contact_modulus * grid.half_width)
         problem = contact.Problem(
             self.deflection,
-            self.gap if isinstance(defect, float) else self.gap + defect,
+            self.gap + defect,
             total=None if indenter.load is None else (indenter.load - missing) / grid.d**2,
             approach=None if indenter.approach is None else indenter.approach + self.datum,
             start=self.first_guess if start is None else start.copy,

@@ -50,22 +50,6 @@ def test_even_field_is_that_of_its_quarter(n):
     np.testing.assert_allclose(quarter.whole(held[:m, :k]), field[inner.slices], rtol=0, atol=1e-14)
 
 
-@pytest.mark.parametrize("n", [12, 14, 13, 15])
-@pytest.mark.parametrize("quarter", [True, False])
-def test_patches_of_twice_the_side_carry_the_load_and_miss_no_low_gap(n, quarter):
-    grid = Grid(n, 0.1, quarter)
-    p = np.random.default_rng(3).random((len(grid.x), len(grid.x)))
-    merged, lowest = grid.merged(p), grid.lowest(p)
-    twice = 2 * len(merged) - n % 2 if quarter else len(merged)
-    assert merged.shape == lowest.shape
-    assert Grid(twice, 0.2, quarter).force(merged) == pytest.approx(grid.force(p), rel=1e-14)
-    # every patch is a part of one that is no further away than a patch
-    for (i, j), value in np.ndenumerate(p):
-        part = grid.merging(Window(i, i + 1, j, j + 1))
-        assert lowest[part.slices].min() <= value
-        assert (lowest[part.slices] <= value).all() or quarter
-
-
 def test_window_around_a_contact_is_the_same_on_a_quarter():
     whole, source = Grid(40, 0.1), Grid(21, 0.2)
     p = np.where(np.hypot(source.x[:, None] / 0.7, source.x / 1.1) < 1, 1.0, 0.0)
