@@ -73,7 +73,7 @@ def stress(
     ratios : of x and y under each pressure to those given; 1 by default.
     """
     nu, f = body.materials[0][1], body.friction
-    ratios = [1.0] * len(pressures) if ratios is None else ratios
+    ratios = ratios or [1.0] * len(pressures)
     total = _summed(x, y, z, layer, pressures, ratios, stress_response(body))
     local = np.array([-(1 + 2 * nu) / 2, -(1 + 2 * nu) / 2, -1.0, 0.0, -f, 0.0])
     surface = (z == 0) & (layer == 0)
@@ -90,9 +90,10 @@ def displacement(
     *,
     pressures: Sequence[RingPressure],
     body: Body,
+    ratios: Sequence[float] | None = None,
 ) -> Array:
     """Displacement u_x, u_y, u_z [m], (pressures, 3, n); arguments as in `stress`."""
-    return _summed(x, y, z, layer, pressures, [1.0] * len(pressures), displacement_response(body))
+    return _summed(x, y, z, layer, pressures, ratios or [1.0] * len(pressures), displacement_response(body))
 
 
 def stress_response(body: Body) -> Response:

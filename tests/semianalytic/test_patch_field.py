@@ -44,17 +44,10 @@ def test_field_is_that_of_the_rings(name, field):
 @pytest.mark.parametrize("field", ["stress", "displacement"])
 def test_plane_is_the_field_at_the_patch_centres(field, z, layer):
     body = BODIES["two coatings"]
-    plane = getattr(patch_field, field + "_plane")(z, layer, grid_x=X, body=body)
-    whole = plane(GRID["pressure"])
+    whole = getattr(patch_field, field + "_plane")(z, layer, **GRID, body=body)
     i, j = np.array([64, 3, 90, 128, 0]), np.array([64, 10, 70, 128, 77])
     at_points = getattr(patch_field, field)(X[i], X[j], z, layer, **GRID, body=body)
     np.testing.assert_allclose(whole[:, i, j], at_points, atol=2e-6)  # coarser lattices deep down
-
-
-def test_plane_refuses_a_pressure_of_another_grid():
-    plane = patch_field.stress_plane(1.0, 0, grid_x=X, body=BODIES["bare"])
-    with pytest.raises(ValueError, match=r"\(3, 3\)"):
-        plane(np.zeros((3, 3)))
 
 
 def test_many_depths_are_interpolated_to_what_each_gives_alone():
