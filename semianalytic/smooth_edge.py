@@ -25,7 +25,6 @@ Indices = NDArray[np.intp]
 
 FULL = 3  # depth in contact to which patches are integrated by parts: 1 beside an unloaded patch
 PARTS = 15  # of a patch a side, odd
-AT_ONCE = 2000  # patches at the edge: with their parts 100 megabytes
 NEAR = 4  # within which the deflection is that of the parts, beyond it that of their moments
 
 
@@ -71,7 +70,7 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     depth, beside = (field[1:-1, 1:-1][tuple(slice(-m, None) for m in p.shape)] for field in (depth, beside))
     i, j = np.nonzero(beside & (depth <= FULL))
     x, y = (grid.x[part] for part in window.slices)
-    square = np.concatenate([_sampled(shape, x[i[k]], y[j[k]], grid.d) for k in _some(np.arange(i.size))])
+    square = _sampled(shape, x[i], y[j], grid.d)
     c = square[:, 2, 2]
     slopes = square[:, 4, 2] - square[:, 0, 2], square[:, 2, 4] - square[:, 2, 0]
     slope = np.hypot(*slopes)
@@ -81,9 +80,8 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     parts = np.empty((i.size, PARTS**2))
     # the edge cuts these along x, or along y
     along_x = np.abs(slopes[0]) >= np.abs(slopes[1])
-    for group, swap in ((along_x, False), (~along_x, True)):
-        for k in _some(np.flatnonzero(group)):
-            parts[k] = _parts(square[k].swapaxes(1, 2) if swap else square[k], swap)
+    parts[along_x] = _parts(square[along_x], False)
+    parts[~along_x] = _parts(square[~along_x].swapaxes(1, 2), True)
     centre = np.sqrt(np.maximum(c, 0))
     return EdgePatches(i, j, centre, parts, depth[i, j] == FULL, float(missed.max(initial=0.0)))
 
@@ -95,11 +93,6 @@ def _sampled(shape: Shape, x: Array, y: Array, d: float) -> Array:
     """
     square: Array = shape.square(x[:, None, None] + NODES[:, None] * d, y[:, None, None] + NODES * d)
     return square
-
-
-def _some(k: Indices) -> list[Indices]:
-    """Patches in groups of at most ``AT_ONCE``."""
-    return np.array_split(k, -(-k.size // AT_ONCE)) if k.size else []
 
 
 def _parts(square: Array, swap: bool) -> Array:
@@ -161,19 +154,18 @@ def beyond_centres(
         moments[1 + di : 1 + di + nx, 1 + dj : 1 + dj + ny] += np.tensordot(_FIELDS @ of_parts, fields, 1)
     for (di, dj), of_fields in zip(np.ndindex(2 * NEAR + 1, 2 * NEAR + 1), near @ _FIELDS.T, strict=True):
         u[di : di + nx, dj : dj + ny] += np.tensordot(of_fields, fields, 1)
-    for k in _some(np.arange(edge.i.size)):
-        i, j = edge.i[k], edge.j[k]
-        sources = edge.parts[k] * own[i, j][:, None]
-        for (di, dj), share in _stencil().items():
-            moments[i + 1 + di, j + 1 + dj] += sources @ share
-        for (di, dj), at_offset in zip(np.ndindex(2 * NEAR + 1, 2 * NEAR + 1), near @ sources.T, strict=True):
-            u[i + di, j + dj] += at_offset
+    i, j = edge.i, edge.j
+    sources = edge.parts * own[i, j][:, None]
+    for (di, dj), share in _stencil().items():
+        moments[i + 1 + di, j + 1 + dj] += sources @ share
+    for (di, dj), at_offset in zip(np.ndindex(2 * NEAR + 1, 2 * NEAR + 1), near @ sources.T, strict=True):
+        u[i + di, j + dj] += at_offset
     moments = _folded(moments, 1, grid)
-    moments[edge.i, edge.j] -= edge.centre
+    moments[i, j] -= edge.centre
     lost = edge.parts.mean(axis=1) - edge.centre
     bend = (fields[2] + fields[4]) / (24 * own)
     missing = float((bend if weight is None else weight * bend).sum())
-    missing += float((lost if weight is None else weight[edge.i, edge.j] * lost).sum())
+    missing += float((lost if weight is None else weight[i, j] * lost).sum())
     return deflection(moments) + _folded(u, NEAR, grid), missing * grid.d**2
 
 
