@@ -345,8 +345,8 @@ class Solution:
                 least = self._floor + self._near_ripple(x, y) + floor * self.peak_pressure
                 deep = np.minimum(np.asarray(z) / (DEEP[1] * self.diagnostics.patch_size), 1.0)
                 # of all pressures together, felt far from the details of the contact too
-                scale = stated.peak_pressure / self.peak_pressure
-                scale = scale + DEEP[0] * deep * stated.contact_radius / self.contact_radius
+                share = stated.peak_pressure / self.peak_pressure
+                scale = share + DEEP[0] * deep * stated.contact_radius / self.contact_radius
                 total = total + least * shallow + np.abs(sigma).max(axis=(0, 1)) * scale
                 total = np.maximum(total, self._misfit(x, y, z))
                 if not self.relative:
