@@ -22,10 +22,8 @@ Array = NDArray[np.floating]
 ROUNDS = 8  # at most
 HELD = 2  # rounds from patches alone in which the edge is held
 STILL = 5e-4  # of a patch: a smaller movement of the edge in a round leaves less than a ten-thousandth
-MISFIT, COARSE_MISFIT = (
-    0.3,
-    2.0,
-)  # patches by which the pressures near a smooth edge may miss f; in the first rounds
+# patches by which the pressures near a smooth edge may miss f; in the first rounds
+MISFIT, COARSE_MISFIT = 0.3, 2.0
 LOST = 0.2  # of the load, the most that constant patches miss of a pressure with a smooth edge
 INNER = 3e-3  # of the peak, that f may miss inside: ellipses 3e-5, a kink of the indenter's slope 0.1
 OUTER_TERMS = 6  # polynomials of a pressure that is fitted near the edge alone
@@ -102,7 +100,8 @@ def _rounds(problem: LevelProblem, shape: Shape, p: Array | None) -> Level | Non
         moved = float(np.abs(step.change[-len(shape.harmonics) :]).sum()) * min(shape.axes)
         if moved < STILL * grid.d:
             break
-    edge = smooth_edge.edge_patches(shape, p, grid, problem.window).averaged
+    edge = smooth_edge.edge_patches(shape, p, grid, problem.window)
+    edge = replace(edge, parts=edge.parts.mean(axis=1, keepdims=True))  # all that is needed from now on
     if not edge.misfit < MISFIT or min(shape.axes) < NARROW * grid.d:
         return None
     either = problem.indenter.round or shape.outside

@@ -35,10 +35,7 @@ EVEN = (0, 2, 4, 6, 8, 10)  # even in x and in y,
 HALF = tuple(range(9))  # even in y, beside its mirror image,
 FULL = (0, *(side * n for n in (1, 2, 3, 4, 6, 8, 9, 10) for side in (1, -1)))  # any
 DAMPING = 0.8  # share of the first step of a fit
-FADED = (
-    0.15,
-    0.4,
-)  # t over which a pressure fitted near the edge alone fades towards the inside; so does its fit
+FADED = 0.15, 0.4  # t over which a pressure fitted near the edge alone, and its fit, fade to the inside
 BLUNT = 0.7  # patches from the edge, nearer than which the column of the edge, infinite there, is constant
 SLACK = 0.3  # patches by which the edge may pass the centre of a loaded or of an unloaded patch
 FAR = -0.6  # t beyond which the contour is an ellipse

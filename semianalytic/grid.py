@@ -8,7 +8,7 @@ of the grid.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -68,11 +68,6 @@ class Grid:
         """All the patches held."""
         m = len(self.x)
         return Window(0, m, 0, m)
-
-    @property
-    def mirror(self) -> Literal["reflect", "symmetric"]:
-        """How ``np.pad`` continues a field held beyond the axes: about a patch centre, or a border."""
-        return "reflect" if self.n % 2 else "symmetric"
 
     def across(self, window: "Window") -> "Window":
         """A window on all n x n patches, of one on those held: of a quarter with its mirror images."""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from semianalytic.response import Layers, Response, response
+from semianalytic.response import Response, response
 
 COARSEST = 33  # patches a side of the coarsest grid
 
@@ -108,15 +108,11 @@ class Body:
         """E* [Pa] of the materials in contact, 1/E* = sum (1 - nu^2)/E of flat and elastic ball."""
         return self.moduli[0] if self.ball is None else 1 / sum(1 / body.moduli[0] for body in self.pair)
 
-    @property
-    def coated(self) -> list[Layers]:
-        """E*/E_i* and the layers of each elastic body with coatings, as `response` takes them."""
-        return [(self.contact_modulus / one.moduli[0], one.layers) for one in self.pair if one.coatings]
-
     @cached_property
     def response(self) -> Response | None:
         """Response of the surfaces in contact, found once for a solve; None where no body is coated."""
-        return response(self.coated) if self.coated else None
+        coated = [(self.contact_modulus / one.moduli[0], one.layers) for one in self.pair if one.coatings]
+        return response(coated) if coated else None
 
     def __getstate__(self) -> dict[str, Any]:
         # pickled without the response, which is found again on use

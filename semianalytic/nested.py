@@ -16,12 +16,8 @@ Array = NDArray[np.floating]
 
 STRIDE = 2.8  # of grids that only give the start: iterations on the next one are about as many as by halves
 HALVINGS = 6  # of steps to the lowest point between the patches, off by 1e-4 of the height over a patch
-REFINED = (
-    2.0,
-    1.4,
-    1.0,
-)  # of the patches a side, over those of the grids of a refinement study; of patches alone
-HALVED = (4.0, 2.0, 1.0)
+# of the patches a side, over those of the grids of a refinement study; of patches alone
+REFINED, HALVED = (2.0, 1.4, 1.0), (4.0, 2.0, 1.0)
 
 
 def levels(

@@ -55,11 +55,6 @@ class EdgePatches:
         """The same on a grid of which the patches were a window that begins at i0, j0."""
         return replace(self, i=self.i + i0, j=self.j + j0)
 
-    @property
-    def averaged(self) -> "EdgePatches":
-        """The same with one mean a patch, all that is needed once the rounds are over."""
-        return replace(self, parts=self.parts.mean(axis=1, keepdims=True))
-
 
 def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatches:
     """The patches of a window near the edge of ``shape``.  p : pressure of the patches [Pa], on the

@@ -39,10 +39,8 @@ FILL = 1.12  # half-width of the grid over the contact radius
 WIDER_SHAPE = 2.0  # first half-width under an indenter that is no sphere, over Hertz's radius
 LARGEST = 0.9  # contact radius over that of the sphere
 BESIDE = 513  # patches a side, at most, of the grid of contacts at neighbouring loads
-ROUGH, ROOMY = (
-    49,
-    1.5,
-)  # patches a side of the grid that finds the contact radius, and its half-width over that
+# patches a side of the grid that finds the contact radius, and its half-width over that
+ROUGH, ROOMY = 49, 1.5
 FINER = 1.4  # patches a side of the next grid over the last
 LARGEST_GRID = 2801  # patches a side of the last for ``accuracy``,
 LARGE_GRID = 1025  # and where refining no longer lessens the uncertainty
