@@ -91,19 +91,10 @@ class Level:
 
     @cached_property
     def scalars(self) -> dict[str, float]:
-        return {
-            "contact_radius": self.radius,
-            "approach": self.found.approach,
-            "peak_pressure": self._peak,
-        }
-
-    @property
-    def _peak(self) -> float:
-        """Of the patches, continued between their centres."""
         peak = float(np.max(self.found.pressure))
-        if self.shape is not None:
+        if self.shape is not None:  # continued between the centres of the patches
             peak += _above_highest(self.grid.whole(self.found.pressure))
-        return peak
+        return {"contact_radius": self.radius, "approach": self.found.approach, "peak_pressure": peak}
 
     @cached_property
     def mean(self) -> Array:

@@ -116,7 +116,8 @@ def _solved(problem: LevelProblem) -> Level:
 
 
 def _embedded(level: Level, window: Window, depth: float) -> Level:
-    edge = None if level.edge is None else level.edge.embedded(window.i0, window.j0)
+    edge = level.edge
+    edge = edge and replace(edge, i=edge.i + window.i0, j=edge.j + window.j0)
     found = level.found.embedded(window.slices, level.grid.window.shape, depth)
     return replace(level, found=found, edge=edge)
 

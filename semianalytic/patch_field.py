@@ -61,7 +61,7 @@ def stress(
     pressure : mean of p over each patch [Pa], (n, n), centred at grid_x along both axes [m], which are
     uniform.  Returns xx, yy, zz, xy, xz, yz [Pa], (6,) + points.
     """
-    return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_x, pressure), _stress_field(body))
+    return _evaluate(x, y, z, layer, nodal_forces(grid_x, pressure), _stress_field(body))
 
 
 def tensor(components: Array) -> Array:
@@ -84,7 +84,7 @@ def displacement(
 
     Returns u[i, ...] [m], shape (3,) + points; u_z into the solid.
     """
-    return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_x, pressure), _displacement_field(body))
+    return _evaluate(x, y, z, layer, nodal_forces(grid_x, pressure), _displacement_field(body))
 
 
 def stress_plane(z: float, layer: int, *, grid_x: Array, pressure: Array, body: Body) -> Array:

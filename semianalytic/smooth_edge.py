@@ -10,7 +10,7 @@ Indices count the patches held: of a quarter grid those at x >= 0, y >= 0 (``gri
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -51,10 +51,6 @@ class EdgePatches:
     inner: NDArray[np.bool_]
     misfit: float
 
-    def embedded(self, i0: int, j0: int) -> "EdgePatches":
-        """The same on a grid of which the patches were a window that begins at i0, j0."""
-        return replace(self, i=self.i + i0, j=self.j + j0)
-
 
 def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatches:
     """The patches of a window near the edge of ``shape``.  p : pressure of the patches [Pa], on the
@@ -65,7 +61,8 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     depth, beside = (field[1:-1, 1:-1][tuple(slice(-m, None) for m in p.shape)] for field in (depth, beside))
     i, j = np.nonzero(beside & (depth <= FULL))
     x, y = (grid.x[part] for part in window.slices)
-    square = _sampled(shape, x[i], y[j], grid.d)
+    # smooth across the edge: the polynomial through these points gives f^2 all over the patch
+    square = shape.square(x[i][:, None, None] + NODES[:, None] * grid.d, y[j][:, None, None] + NODES * grid.d)
     c = square[:, 2, 2]
     slopes = square[:, 4, 2] - square[:, 0, 2], square[:, 2, 4] - square[:, 2, 0]
     slope = np.hypot(*slopes)
@@ -81,21 +78,12 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     return EdgePatches(i, j, centre, parts, depth[i, j] == FULL, float(missed.max(initial=0.0)))
 
 
-def _sampled(shape: Shape, x: Array, y: Array, d: float) -> Array:
-    """f^2 at ``NODES`` x ``NODES`` in the patches at centres x, y [m], (k, 5, 5).
-
-    It is smooth across the edge: the polynomial through these points gives f^2 all over the patch.
-    """
-    square: Array = shape.square(x[:, None, None] + NODES[:, None] * d, y[:, None, None] + NODES * d)
-    return square
-
-
 def _parts(square: Array, swap: bool) -> Array:
     """Mean of f over PARTS x PARTS parts of every patch, (k, PARTS^2), cut by the edge along one axis or not.
 
     Exact for f^2 linear along that axis, with two Gauss points across.
 
-    square : f^2 of `_sampled`, that axis first.  swap : the axis is y.
+    square : f^2 at ``NODES`` x ``NODES`` in the patches, that axis first, (k, 5, 5).  swap : the axis is y.
     """
     c = square[:, 2, 2]
     bend = 2 * (square[:, 4, 2] + square[:, 0, 2] - 2 * c)  # half the second derivative, in patches
