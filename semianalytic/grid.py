@@ -58,11 +58,6 @@ class Grid:
         w = self.weight(pressure.shape)
         return float(np.sum(pressure if w is None else w * pressure)) * self.d**2
 
-    def count(self, marked: NDArray[np.bool_]) -> int:
-        """Patches marked by those held on a window."""
-        w = self.weight(marked.shape)
-        return int(np.count_nonzero(marked) if w is None else w[marked].sum())
-
     @property
     def window(self) -> "Window":
         """All the patches held."""

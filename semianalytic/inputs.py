@@ -168,13 +168,11 @@ def undeformed_gap(name: str, radius: float) -> Callable[[NDArray[Any]], NDArray
 
     Raises ValueError for another name.
     """
-    gaps: dict[str, Callable[[NDArray[Any]], NDArray[Any]]] = {
-        "parabola": lambda r: r**2 / (2 * radius),
-        "sphere": lambda r: r**2 / (radius + np.sqrt(np.maximum(radius**2 - r**2, 0.0))),
-    }
-    if name not in gaps:
-        raise ValueError(f"gap = {name!r}; choose parabola or sphere")
-    return gaps[name]
+    if name == "parabola":
+        return lambda r: r**2 / (2 * radius)
+    if name == "sphere":
+        return lambda r: r**2 / (radius + np.sqrt(np.maximum(radius**2 - r**2, 0.0)))
+    raise ValueError(f"gap = {name!r}; choose parabola or sphere")
 
 
 def check_finite(**values: float) -> None:

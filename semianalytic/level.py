@@ -64,7 +64,7 @@ class Level:
             return self.shape.radius
         if self.given is not None:
             return self.given.radius
-        loaded = self.grid.count(self.found.pressure > 0)
+        loaded = np.count_nonzero(self.grid.whole(self.found.pressure))
         return float(np.sqrt(loaded / np.pi) * self.grid.d)
 
     @property

@@ -33,7 +33,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from semianalytic.frf import Load, displacement_frf, stress_frf
-from semianalytic.hankel import NEAR, hankel, log_grid, near_axis
+from semianalytic.hankel import LONG, NEAR, USUAL, hankel, near_axis
 from semianalytic.inputs import Body
 
 Array = NDArray[Any]
@@ -80,7 +80,7 @@ def _tables(
     """Splines through the radial functions, at scale times ``_INNER`` and all radii beyond."""
     # a film E, h stretches on a base E' over a length h E/E', bends over less
     moduli = [material[0] for material in body.materials]
-    grid = log_grid(sum(body.thickness) * max(moduli) / min(moduli) / scale)
+    grid = USUAL if sum(body.thickness) * max(moduli) / min(moduli) / scale < 1e4 else LONG
     beyond = grid.radii >= NEAR
     response = partial(frf, grid.wavenumbers / scale, z, layer, **body.layers, excess=excess)
     radial = []

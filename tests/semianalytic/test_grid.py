@@ -44,7 +44,6 @@ def test_even_field_is_that_of_its_quarter(n):
     np.testing.assert_allclose(quarter.whole(held), field, rtol=0, atol=1e-14)
     np.testing.assert_allclose(quarter.ringed(held)[:-1, :-1], field[n // 2 - 1 :, n // 2 - 1 :], atol=1e-14)
     assert quarter.force(held) == pytest.approx(whole.force(field), rel=1e-14)
-    assert quarter.count(held > 2.5) == np.count_nonzero(field > 2.5)
     m, k = n // 2 - 2, n // 2 - 4
     inner = quarter.across(Window(0, m, 0, k))
     np.testing.assert_allclose(quarter.whole(held[:m, :k]), field[inner.slices], rtol=0, atol=1e-14)

@@ -51,5 +51,17 @@ def test_many_depths_are_interpolated_to_what_each_gives_alone():
     np.testing.assert_allclose(together[:, :5], np.stack(alone, axis=-1), rtol=0, atol=2e-6)
 
 
+def test_a_single_patch_deep_down_is_a_point_force():
+    pressure, z = np.zeros((N, N)), 20 * D
+    pressure[N // 2, N // 2] = 1 / D**2
+    body, at = BODIES["two coatings"], (np.array([0.0, 2 * D]), np.zeros(2))
+    for depth in (0.5 * D, z):  # near the patch no node is a point force
+        layer = body.layer_of(np.full(2, depth), None)
+        found = patch_field.stress(*at, depth, layer, grid_x=X, pressure=pressure, body=body)
+        assert np.isfinite(found).all()
+    force = subsurface.PointField.of(np.array([z]), int(layer[0]), subsurface.stress_response(body))
+    np.testing.assert_allclose(found, force(*at, z), rtol=0, atol=1e-2 * np.abs(found).max())
+
+
 def test_no_points_give_no_stress():
     assert patch_field.stress(np.zeros(0), 0.0, 0.0, 0, **GRID, body=BODIES["bare"]).shape == (6, 0)
