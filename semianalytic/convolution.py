@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.floating]
+Operator = Callable[[Array], Array]
 
 SHARED = 3 * 2**17  # points of a transform below which a second thread was measured to give no gain
 
@@ -27,7 +28,7 @@ def good_size(n: int) -> int:
     return 2 * int(ducc0.fft.good_size((n + 1) // 2, False))
 
 
-def even_convolution(kernel: Array, *, quarter: bool = False, threads: int = 1) -> Callable[[Array], Array]:
+def even_convolution(kernel: Array, *, quarter: bool = False, threads: int = 1) -> Operator:
     """Linear convolution with a kernel even in both indices.
 
     kernel : K(i, j) for i, j >= 0, shape (nx, ny), the largest offsets between two patches.
@@ -48,7 +49,7 @@ def even_convolution(kernel: Array, *, quarter: bool = False, threads: int = 1) 
     return _apply_even(spectrum, nx, ny, threads)
 
 
-def circulant_inverse(kernel: Array, *, quarter: bool = False, threads: int = 1) -> Callable[[Array], Array]:
+def circulant_inverse(kernel: Array, *, quarter: bool = False, threads: int = 1) -> Operator:
     """Inverse of the circular convolution that keeps the near half of the kernel.
 
     Strang's circulant preconditioner (Stud. Appl. Math. 74 (1986) 171-176): offsets up to half the grid,
@@ -84,7 +85,7 @@ def _worth(threads: int, size: int) -> int:
 
 def _apply_cosines(
     spectrum: Array, nx: int, ny: int, types: tuple[tuple[int, int], tuple[int, int]], threads: int
-) -> Callable[[Array], Array]:
+) -> Operator:
     """Multiplication of the cosine transform of a quarter of nx x ny patches by ``spectrum``.
 
     types : of the transform and of its inverse, along an even number of patches and along an odd one.
@@ -109,7 +110,7 @@ def _apply_cosines(
     return apply
 
 
-def _apply_even(spectrum: Array, nx: int, ny: int, threads: int) -> Callable[[Array], Array]:
+def _apply_even(spectrum: Array, nx: int, ny: int, threads: int) -> Operator:
     half = spectrum.shape[0] - 1
     mx, my = 2 * half, 2 * (spectrum.shape[1] - 1)
     spectrum /= mx * my

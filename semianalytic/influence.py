@@ -123,7 +123,7 @@ def plain_coefficients(
     return quadrant[:n, :n] * (2 * np.pi / (m * m))
 
 
-def _octant(g: Callable[[Array], Array], n: int, d: float) -> Array:
+def _octant(g: Function, n: int, d: float) -> Array:
     """g at the patch centres, computed up to the diagonal."""
     table: Array = np.empty((n, n))
     i, j = np.tril_indices(n)
@@ -152,9 +152,7 @@ def _average(table: Array) -> Array:
     return mean
 
 
-def _gauss_block(
-    mean: Array, g: Callable[[Array], Array], d: float, inner: int, outer: int, reach: float
-) -> None:
+def _gauss_block(mean: Array, g: Function, d: float, inner: int, outer: int, reach: float) -> None:
     """Overwrite the patches inner <= max(i, j) < outer by Gauss quadrature, in place.
 
     reach : distance to the nearest singularity of g in patches, sets the order: error rho^(-2 order).
