@@ -37,12 +37,13 @@ RESOLVED = 1.75  # polynomials for each sqrt(patches in a times e asinh(1/e)); u
 THICK = 100.0  # e of a layer so thick that it does not matter
 
 
-def corrected(problem: LevelProblem, start: Shape | None) -> Level:
+def corrected(problem: LevelProblem) -> Level:
     """Contact on a window with its edge corrected; of the patches alone where the edge is not a smooth curve.
 
-    start : shape on a coarser grid, None for that of the patches alone.
+    The rounds start with the shape on the coarser grid, where there is one.
     """
     before = problem.before
+    start = None if before is None else before.shape
     if before is not None and start is not None and start.outside:
         start = None if min(start.axes) < FEW_PATCHES * before.grid.d else start
     if start is not None:
@@ -73,7 +74,6 @@ def _rounds(problem: LevelProblem, shape: Shape, p: Array | None) -> Level | Non
     grid, (x, y) = problem.grid, problem.centres
     near, weight, convolutions = _near_influence(problem), grid.weight(problem.gap.shape), 0
     step: Step | None = None
-
     fit = partial(edge_shape.fitted, x=x, y=y, deflection=problem.deflection, weight=weight, patch=grid.d)
     fresh = p is not None
     if p is None:  # f is smoother than the interpolated pressure of the patches

@@ -109,10 +109,7 @@ def _of_single_precision(level: Level) -> Level:
 
 
 def _solved(problem: LevelProblem) -> Level:
-    if not problem.indenter.edge_correction:
-        return problem.solve()
-    before = problem.before
-    return corrected(problem, None if before is None else before.shape)
+    return corrected(problem) if problem.indenter.edge_correction else problem.solve()
 
 
 def _embedded(level: Level, window: Window, depth: float) -> Level:
