@@ -17,15 +17,11 @@ of the change of p.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-
-from semianalytic import arrays
-from semianalytic.arrays import Mirror, blocks
-
-__all__ = ["Contact", "NotConverged", "solve"]
+from scipy.ndimage import gaussian_filter
 
 Array = NDArray[np.floating]
 Mask = NDArray[np.bool_]
@@ -79,78 +75,73 @@ class Contact:
         return replace(self, pressure=pressure, gap=gap)
 
 
-class _ContactSet:
-    """Contact set, with the extension of the residual beyond it by means over ``extension`` patches."""
-
-    def __init__(self, inside: Mask, problem: "_Problem", work: Array) -> None:
-        self.extension, self.mirror = problem.extension, problem.mirror
-        self._dtype = work.dtype
-        # what P gives only directs the steps: a thousandth is enough where these are of single precision
-        single = work.dtype == np.float32
-        self._share = np.empty(inside.shape, dtype=np.float16 if single else work.dtype)
-        self.update(inside, work)
-
-    def update(self, inside: Mask, work: Array) -> None:
-        """Another contact set, in the same memory.  work : shape and precision of the residual."""
-        self.inside = inside
-        self._share[...] = self._mean(inside, work)
-
-    def one(self, rows: tuple[slice, slice]) -> Array:
-        """Unit residual, extended beyond the contact set."""
-        share: Array = np.asarray(np.minimum(self._share[rows], FADED), dtype=self._dtype)
-        share /= FADED
-        share[self.inside[rows]] = 1.0
-        return share
-
-    def extended(self, r: Array, out: Array) -> Array:
-        """r, which is 0 outside, in contact; its local mean just outside, 0 far away."""
-        self._mean(r, out)
-        for rows in blocks(r):
-            out[rows] /= np.maximum(self._share[rows], FADED)
-            out[rows] = np.where(self.inside[rows], r[rows], out[rows])
-        return out
-
-    def _mean(self, r: NDArray[Any], out: Array) -> Array:
-        # mirrored at the rim of the grid, as at the axes of a quarter
-        return arrays.gaussian_mean(r, self.extension, self.mirror, out)
-
-
 @dataclass(frozen=True, eq=False)
-class _Problem:
-    """The arguments of ``solve``."""
+class Problem:
+    """What is known of a contact.
+
+    deflection : u = A p, linear, symmetric, positive.  gap : g0 [m], (nx, ny).
+    total : sum of p over the patches [Pa], for load control; else approach : delta [m], the other one None.
+    start : computes a first guess of p.  precondition : z = P r, approximate inverse of A.
+    scale : length to which gap and penetration are relative [m].  tolerance : on each of them, relative.
+    extension : patches over which the residual is extended beyond the contact.
+    weight : patches that each entry represents, where the operators and the gap are those of a ``grid.Grid``
+    held as a quarter.  mirror : of fields at the rim and at the axes of a quarter, as in ``scipy.ndimage``:
+    "mirror" about a patch centre, "reflect" about a border.
+    """
 
     deflection: Operator
-    deflection_into: Callable[[Array, Array], object] | None
     gap: Array
     total: float | None
     approach: float | None
-    start: Array | Callable[[], Array]
+    start: Callable[[], Array]
     precondition: Operator
     scale: float
     tolerance: float
     max_iterations: int
-    extension: float
-    weight: Array | None
-    mirror: Mirror
+    extension: float = EXTENSION
+    weight: Array | None = None
+    mirror: Literal["mirror", "reflect"] = "mirror"
 
     def balanced(self, p: Array) -> Array:
-        """Pressure scaled to the load, in place."""
-        if self.total is not None:
-            p *= self.total / self.sum(p)
-        return p
+        """Pressure scaled to the load."""
+        return p if self.total is None else p * (self.total / self.sum(p))
 
     def sum(self, a: Array) -> float:
         """Sum over all patches."""
-        return arrays.total(a, self.weight)
+        return float(np.sum(a) if self.weight is None else np.einsum("ij,ij->", a, self.weight))
 
     def dot(self, a: Array, b: Array) -> float:
         """Inner product over all patches."""
-        return arrays.dot(a, b, self.weight)
+        # not by BLAS: its threads keep spinning after such a short sum and slow those of the FFT
+        if self.weight is None:
+            return float(np.einsum("ij,ij->", a, b))
+        return float(np.einsum("ij,ij,ij->", a, b, self.weight))
+
+    def mean(self, a: Array | Mask) -> Array:
+        """Means by a Gaussian of ``extension`` patches, mirrored at the rim as at the axes of a quarter."""
+        mean: Array = gaussian_filter(a, self.extension, output=np.float64, mode=self.mirror, truncate=3.0)
+        return mean
+
+
+class _ContactSet:
+    """Contact set, with the extension of the residual beyond it."""
+
+    def __init__(self, inside: Mask, problem: Problem) -> None:
+        self.inside, self._problem = inside, problem
+        self._share = problem.mean(inside)
+
+    def one(self) -> Array:
+        """Unit residual, extended beyond the contact set."""
+        return np.where(self.inside, 1.0, np.minimum(self._share, FADED) / FADED)
+
+    def extended(self, r: Array) -> Array:
+        """r, which is 0 outside, in contact; its local mean just outside, 0 far away."""
+        return np.where(self.inside, r, self._problem.mean(r) / np.maximum(self._share, FADED))
 
 
 @dataclass(slots=True, eq=False)
 class _State:
-    """One iterate; its arrays are reused in place, since allocating them anew costs as much as the sums.
+    """One iterate.
 
     p, g, delta : pressure, gap, approach.  updated : g by recurrence, not from A p.
     contact : the set, P_one : P of the unit residual on it, new : it changed since the last step.
@@ -160,15 +151,14 @@ class _State:
     residual at the first iteration on the set.  left : largest |z| when the iteration stopped.
     tension : patches with p < 0.  admissible : no tension, no penetration.
     iterations, on_set, set_updates, convolutions : counts; on_set those since the last change of the set.
-    What P gives only directs the steps: the arrays from ``extended`` to ``last`` may be of single precision.
     """
 
     p: Array
-    g: Array
     contact: _ContactSet
     delta: float
-    extended: Array
-    z: Array
+    g: Array = field(init=False)
+    extended: Array = field(init=False)
+    z: Array = field(init=False)
     P_one: Array = field(init=False)
     step: Array = field(init=False)
     last: Array = field(init=False)
@@ -189,63 +179,14 @@ class _State:
     convolutions: int = 0
     history: list[tuple[float, float]] = field(default_factory=list)
 
-    def __post_init__(self) -> None:
-        self.last, self.step, self.P_one = np.empty_like(self.z), np.zeros_like(self.z), np.empty_like(self.z)
-        self.tension = np.empty_like(self.contact.inside)
 
-
-def solve(
-    deflection: Operator,
-    gap: Array,
-    *,
-    total: float | None = None,
-    approach: float | None = None,
-    start: Array | Callable[[], Array],
-    precondition: Operator,
-    scale: float,
-    tolerance: float,
-    max_iterations: int,
-    extension: float = EXTENSION,
-    weight: Array | None = None,
-    mirror: Mirror = "mirror",
-    work: tuple[Array, Array] | None = None,
-    deflection_into: Callable[[Array, Array], object] | None = None,
-) -> Contact:
+def solve(problem: Problem) -> Contact:
     """Pressure p >= 0 that closes the gap where it acts and leaves it open elsewhere.
 
-    deflection : u = A p, linear, symmetric, positive.  gap : g0 [m], (nx, ny).
-    total : sum of p over the patches [Pa], for load control; else approach : delta [m].
-    start : first guess of p, or what computes it.  precondition : z = P r, approximate inverse of A.
-    scale : length to which gap and penetration are relative [m].  tolerance : on each of them, relative.
-    extension : patches over which the residual is extended beyond the contact.
-    weight : patches that each entry represents, where the operators and the gap are those of a ``grid.Grid``
-    held as a quarter.  mirror : of fields at the rim and at the axes of a quarter, as in ``scipy.ndimage``:
-    "mirror" about a patch centre, "reflect" about a border.
-    work : for the residual and for what P makes of it, memory (nx, ny) that both operators may use, in the
-    precision of the search direction; P may take its argument from where it returns its value.
-    deflection_into : writes A p into a given array, where ``deflection`` has the precision of the steps.
-
-    Raises NotConverged after max_iterations, ValueError unless exactly one of total and approach is given.
+    Raises NotConverged after ``problem.max_iterations``.
     """
-    if (total is None) == (approach is None):
-        raise ValueError("give either total (load control) or approach, not both and not neither")
-    problem = _Problem(
-        deflection,
-        deflection_into,
-        gap,
-        total,
-        approach,
-        start,
-        precondition,
-        scale,
-        tolerance,
-        max_iterations,
-        extension,
-        weight,
-        mirror,
-    )
     # numbered as by Polonsky and Keer; their last steps come first, for the first guess may be the solution
-    state = _first_guess(problem, work)
+    state = _first_guess(problem)
     _find_gap(state, problem)  # 1: gap, its preconditioned mean removed
     while not _is_solved(state, problem):  # 7: stopping criterion
         if not _update_set(state, problem):  # 5, 6: tension leaves, overlap enters; balance of the load
@@ -256,20 +197,18 @@ def solve(
     return _contact(state, problem)
 
 
-def _first_guess(problem: _Problem, work: tuple[Array, Array] | None) -> _State:
+def _first_guess(problem: Problem) -> _State:
     p = _start(problem)
-    extended, z = (np.empty(p.shape), np.empty(p.shape)) if work is None else work
-    contact = _ContactSet(p > 0, problem, extended)
-    state = _State(p, np.empty_like(p), contact, problem.approach or 0.0, extended, z)
+    state = _State(p, _ContactSet(p > 0, problem), problem.approach or 0.0)
+    state.step = np.zeros_like(p)
     _find_gap_of_pressure(state, problem)
     _find_P_one(state, problem)
     return state
 
 
-def _start(problem: _Problem) -> Array:
-    p = problem.start() if callable(problem.start) else np.array(problem.start, order="C")
-    p[p < 0] = 0.0
-    if not np.isfinite(arrays.total(p)):
+def _start(problem: Problem) -> Array:
+    p = np.maximum(problem.start(), 0.0)
+    if not np.isfinite(np.sum(p)):
         raise NotConverged(
             "the first guess of the pressure is not finite; look at the influence coefficients"
         )
@@ -278,7 +217,7 @@ def _start(problem: _Problem) -> Array:
     return problem.balanced(p)
 
 
-def _choose_preconditioner(state: _State, problem: _Problem) -> None:
+def _choose_preconditioner(state: _State, problem: Problem) -> None:
     """Cut P off at the edge, later drop it; what conjugate directions have been built is discarded."""
     if not state.on_set:
         return
@@ -286,7 +225,7 @@ def _choose_preconditioner(state: _State, problem: _Problem) -> None:
         # where the preconditioner misleads, the iterate is far from the solution: start from the first guess
         state.p = _start(problem)
         _find_gap_of_pressure(state, problem)
-        state.contact.update(state.p > 0, state.extended)
+        state.contact = _ContactSet(state.p > 0, problem)
         state.set_updates = PREDICTED_UPDATES
     elif state.iterations != EXTENDED_ITERATIONS:
         return
@@ -294,85 +233,67 @@ def _choose_preconditioner(state: _State, problem: _Problem) -> None:
     state.on_set = 0
 
 
-def _precondition(state: _State, problem: _Problem) -> None:
-    """z = P r on the contact set, of r in place of z, or of its extension."""
+def _precondition(r: Array, extended: Array, state: _State, problem: Problem) -> Array:
+    """z = P r on the contact set, of r or of its extension; r itself once P is dropped."""
     if state.iterations >= PRECONDITIONED_ITERATIONS:
-        return
-    z = problem.precondition(state.extended if state.iterations < EXTENDED_ITERATIONS else state.z)
-    np.multiply(z, state.contact.inside, out=state.z)
+        return r
+    z = problem.precondition(extended if state.iterations < EXTENDED_ITERATIONS else r)
+    return z * state.contact.inside
 
 
-def _find_P_one(state: _State, problem: _Problem) -> None:
-    if problem.approach is None:
-        for rows in blocks(state.z):
-            state.extended[rows] = state.contact.one(rows)
-        state.z[...] = 1.0
-        np.multiply(state.z, state.contact.inside, out=state.z)
-        _precondition(state, problem)
-        state.P_one[...] = state.z
+def _find_P_one(state: _State, problem: Problem) -> None:
+    one = np.where(state.contact.inside, 1.0, 0.0)
+    state.P_one = _precondition(one, state.contact.one(), state, problem)
 
 
-def _find_gap(state: _State, problem: _Problem) -> None:
+def _find_gap(state: _State, problem: Problem) -> None:
     """Step 1: z = P r, r the gap in contact; g with the delta for which sum z = 0 keeps the load."""
-    np.multiply(state.g, state.contact.inside, out=state.z)
-    state.contact.extended(state.z, state.extended)
-    _precondition(state, problem)
+    r = state.g * state.contact.inside
+    state.extended = state.contact.extended(r)
+    state.z = _precondition(r, state.extended, state, problem)
     if problem.approach is None:
         shift = state.shift = problem.sum(state.z) / problem.sum(state.P_one)
-        state.g -= shift
-        arrays.subtract(state.z, state.P_one, shift)
+        state.g = state.g - shift
+        state.z = state.z - state.P_one * shift
         state.delta += shift
     _measure(state, problem)
 
 
-def _find_gap_of_pressure(state: _State, problem: _Problem) -> None:
-    if problem.deflection_into is None:
-        state.g[...] = problem.deflection(state.p)
-    else:
-        problem.deflection_into(state.p, state.g)
-    state.g += problem.gap
-    state.g -= state.delta
+def _find_gap_of_pressure(state: _State, problem: Problem) -> None:
+    state.g = problem.deflection(state.p) + problem.gap - state.delta
     state.updated = False
     state.convolutions += 1
 
 
-def _measure(state: _State, problem: _Problem) -> None:
+def _measure(state: _State, problem: Problem) -> None:
     """Residual, penetration and tension of the iterate."""
-    largest = []
-    for rows in blocks(state.g):
-        g = state.g[rows]
-        r = np.empty_like(g)
-        np.multiply(g, state.contact.inside[rows], out=r)
-        inside = float(np.max(r)), -float(np.min(r))
-        r -= g
-        largest.append((*inside, float(np.max(r))))
-        state.tension[rows] = state.p[rows] < 0
-    residual, negative, depth = np.max(largest, axis=0)
-    state.residual = float(np.maximum(residual, negative)) / problem.scale
+    inside = state.g * state.contact.inside
+    state.residual = float(np.max(np.abs(inside))) / problem.scale
     if state.on_set == 0:
         state.first = state.residual
-    state.depth = float(depth)
+    state.depth = float(np.max(inside - state.g))
+    state.tension = state.p < 0
     # a margin for patches that enter before the residual is small; then the tolerance alone
     margin = 1.0 if state.residual <= problem.tolerance else 0.5
     state.deep = margin * problem.tolerance * problem.scale
     state.admissible = not np.any(state.tension) and state.depth <= state.deep
 
 
-def _is_solved(state: _State, problem: _Problem) -> bool:
+def _is_solved(state: _State, problem: Problem) -> bool:
     """Step 7: whether the contact conditions hold within the tolerance, for A p itself.
 
     Raises NotConverged when they do not and the iterations are used up.
     """
     solved = _within_tolerance(state, problem)
     if solved:
-        state.left = _largest(state.z)
+        state.left = float(np.max(np.abs(state.z)))
     if solved and state.updated:
-        problem.balanced(state.p)
+        state.p = problem.balanced(state.p)
         _find_gap_of_pressure(state, problem)
         _measure(state, problem)
         if not _within_tolerance(state, problem):
             _find_gap(state, problem)
-            solved, state.left = _within_tolerance(state, problem), _largest(state.z)
+            solved, state.left = _within_tolerance(state, problem), float(np.max(np.abs(state.z)))
     if not solved and state.iterations >= problem.max_iterations:
         raise NotConverged(
             f"gap in contact {state.residual:.1e} and penetration {state.depth / problem.scale:.1e} of the "
@@ -382,67 +303,61 @@ def _is_solved(state: _State, problem: _Problem) -> bool:
     return solved
 
 
-def _within_tolerance(state: _State, problem: _Problem) -> bool:
+def _within_tolerance(state: _State, problem: Problem) -> bool:
     return state.admissible and state.residual <= problem.tolerance
 
 
-def _update_set(state: _State, problem: _Problem) -> bool:
+def _update_set(state: _State, problem: Problem) -> bool:
     """Steps 5 and 6: patches in tension leave the set, overlapping ones enter; the load is balanced.
 
     Returns False where the set is kept: it is admissible, new, or its residual has not fallen enough.
     """
     if state.admissible or state.new:
         return False
-    leave, enter = state.tension, ~state.contact.inside  # p < 0 in contact alone
+    inside, leave = state.contact.inside, state.tension  # p < 0 in contact alone
     if state.set_updates >= PREDICTED_UPDATES:
-        enter &= state.g < -state.deep
+        enter = ~inside & (state.g < -state.deep)
     else:
         fallen = state.residual <= max(RESIDUAL_FALL * state.first, 0.3 * problem.tolerance)
         if not fallen and state.on_set < ITERATIONS_PER_SET:
             return False
         # the set predicted for a vanishing residual: g less its extension outside, p less z inside
-        for rows in blocks(state.g):
-            predicted = state.g[rows] - state.extended[rows] + state.contact.one(rows) * state.shift
-            enter[rows] &= predicted < -0.5 * problem.tolerance * problem.scale
-            leave[rows] &= state.p[rows] < state.z[rows]
-    any_leave = bool(np.any(leave))
-    if not (any_leave or np.any(enter)):
+        predicted = state.g - state.extended + state.contact.one() * state.shift
+        enter = ~inside & (predicted < -0.5 * problem.tolerance * problem.scale)
+        leave = leave & (state.p < state.z)
+    if not (np.any(leave) or np.any(enter)):
         return False
-    enter |= state.contact.inside
-    enter ^= leave
-    state.contact.update(enter, state.extended)
+    state.contact = _ContactSet((inside | enter) & ~leave, problem)
     _find_P_one(state, problem)
     state.set_updates, state.on_set, state.new = state.set_updates + 1, 0, True
-    if any_leave:
-        state.p[leave] = 0.0
-        problem.balanced(state.p)
+    if np.any(leave):
+        state.p = problem.balanced(np.where(leave, 0.0, state.p))
         _find_gap_of_pressure(state, problem)
     return True
 
 
-def _find_direction(state: _State, problem: _Problem) -> None:
+def _find_direction(state: _State, problem: Problem) -> None:
     """Step 2: conjugate direction on the contact set, steepest descent after the set has changed."""
     descent = problem.dot(state.g, state.z)
     beta = 0.0 if state.on_set == 0 else max(0.0, descent - problem.dot(state.last, state.z)) / state.slope
     state.slope = descent
-    state.step *= beta
-    state.step += state.z
+    state.step = state.step * beta + state.z
 
 
-def _advance(state: _State, problem: _Problem) -> None:
+def _advance(state: _State, problem: Problem) -> None:
     """Steps 3 and 4: alpha = (g, t) / (t, A t), then p - alpha t and g - alpha A t."""
     state.history.append((state.residual, state.depth / problem.scale))
     Au = problem.deflection(state.step)
     state.convolutions += 1
     alpha = problem.dot(state.g, state.step) / problem.dot(state.step, Au)
-    state.last[...] = state.g
-    arrays.subtract(state.p, state.step, alpha)
-    arrays.subtract(state.g, Au, alpha)
+    state.last = state.g
+    state.p = state.p - state.step * alpha
+    state.g = state.g - Au * alpha
     state.updated, state.new = True, False
     state.iterations, state.on_set = state.iterations + 1, state.on_set + 1
 
 
-def _contact(state: _State, problem: _Problem) -> Contact:
+def _contact(state: _State, problem: Problem) -> Contact:
     error = 0.0 if problem.total is None else abs(problem.sum(state.p) / problem.total - 1)
     return Contact(
         pressure=state.p,
@@ -456,7 +371,3 @@ def _contact(state: _State, problem: _Problem) -> Contact:
         history=tuple(state.history),
         left=np.inf if state.iterations >= PRECONDITIONED_ITERATIONS else state.left,
     )
-
-
-def _largest(a: Array) -> float:
-    return max(float(np.max(a)), -float(np.min(a)))

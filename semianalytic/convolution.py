@@ -17,16 +17,9 @@ import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import halved_convolution
-
-__all__ = ["circulant_inverse", "even_convolution", "good_size", "memory_size"]
-
 Array = NDArray[np.floating]
+Operator = Callable[[Array], Array]
 
-BLOCK = (
-    2**15
-)  # numbers of the rows, or the columns, transformed at a time by a thread: they stay in the cache
-WHOLE = 8  # blocks in a transform, up to which it is not divided
 SHARED = 3 * 2**17  # points of a transform below which a second thread was measured to give no gain
 
 
@@ -35,28 +28,13 @@ def good_size(n: int) -> int:
     return 2 * int(ducc0.fft.good_size((n + 1) // 2, False))
 
 
-def memory_size(nx: int, ny: int, *, padded: bool, single: bool = False) -> int:
-    """Numbers of work memory that the operators below use: doubled by zeros, as the convolution, or not.
-
-    single : of single precision, of the convolution.
-    """
-    if single and padded:
-        return halved_convolution.memory_size(nx, 2 * good_size(ny))
-    my = good_size(2 * ny - 1 if padded else ny)
-    return 2 * nx * (my // 2 + 1)
-
-
-def even_convolution(
-    kernel: Array, *, quarter: bool = False, threads: int = 1, memory: Array | None = None
-) -> Callable[..., Array]:
+def even_convolution(kernel: Array, *, quarter: bool = False, threads: int = 1) -> Operator:
     """Linear convolution with a kernel even in both indices.
 
     kernel : K(i, j) for i, j >= 0, shape (nx, ny), the largest offsets between two patches.
     quarter : p is even about the middle of the nx x ny patches and held on its far side, that included.
     Returns u(p) for p of shape (nx, ny), of a quarter ((nx + 1) // 2, (ny + 1) // 2); u has its shape, units
     K times p. It reuses its work memory: concurrent calls need one operator each.
-    memory : flat, of ``memory_size``, not for a quarter; u is then a part of it, and lost with its next use.
-    In memory of single precision p may be of either; u(p, out) of double: ``halved_convolution``.
     """
     nx, ny = kernel.shape
     if quarter:
@@ -67,23 +45,17 @@ def even_convolution(
         ducc0.fft.dct(spectrum, axes=(0, 1), type=3, nthreads=_worth(threads, mx * my), out=spectrum)
         spectrum /= 4 * mx * my
         return _apply_cosines(spectrum, nx, ny, ((4, 4), (3, 2)), threads)
-    if memory is not None and memory.dtype == np.float32:
-        spectrum = _even_spectrum(kernel, good_size(2 * nx - 1), 2 * good_size(ny), threads)
-        return halved_convolution.apply_even(spectrum, nx, ny, threads, memory)
     spectrum = _even_spectrum(kernel, good_size(2 * nx - 1), good_size(2 * ny - 1), threads)
-    return _apply_even(spectrum, nx, ny, threads, memory)
+    return _apply_even(spectrum, nx, ny, threads)
 
 
-def circulant_inverse(
-    kernel: Array, *, quarter: bool = False, threads: int = 1, memory: Array | None = None
-) -> Callable[[Array], Array]:
+def circulant_inverse(kernel: Array, *, quarter: bool = False, threads: int = 1) -> Operator:
     """Inverse of the circular convolution that keeps the near half of the kernel.
 
     Strang's circulant preconditioner (Stud. Appl. Math. 74 (1986) 171-176): offsets up to half the grid,
     wrapped around; about the inverse FRF, and a quarter of the work of the padded convolution.
 
-    kernel, quarter, memory : as in ``even_convolution``; the inverse has the precision of the memory.
-    Returns a function of r, of the shape of p there.
+    kernel, quarter : as in ``even_convolution``.  Returns a function of r, of the shape of p there.
     """
     nx, ny = kernel.shape
     mx, my = good_size(nx), good_size(ny)
@@ -95,9 +67,7 @@ def circulant_inverse(
         inverse /= mx * my
         held = inverse[: mx // 2 + nx % 2, : my // 2 + ny % 2]
         return _apply_cosines(held, nx, ny, ((2, 3), (1, 1)), threads)
-    return _apply_even(
-        inverse.astype(np.float64 if memory is None else memory.dtype), nx, ny, threads, memory
-    )
+    return _apply_even(inverse, nx, ny, threads)
 
 
 def _even_spectrum(kernel: Array, mx: int, my: int, threads: int) -> Array:
@@ -115,7 +85,7 @@ def _worth(threads: int, size: int) -> int:
 
 def _apply_cosines(
     spectrum: Array, nx: int, ny: int, types: tuple[tuple[int, int], tuple[int, int]], threads: int
-) -> Callable[[Array], Array]:
+) -> Operator:
     """Multiplication of the cosine transform of a quarter of nx x ny patches by ``spectrum``.
 
     types : of the transform and of its inverse, along an even number of patches and along an odd one.
@@ -140,55 +110,24 @@ def _apply_cosines(
     return apply
 
 
-def _apply_even(
-    spectrum: Array, nx: int, ny: int, threads: int, memory: Array | None
-) -> Callable[[Array], Array]:
+def _apply_even(spectrum: Array, nx: int, ny: int, threads: int) -> Operator:
     half = spectrum.shape[0] - 1
     mx, my = 2 * half, 2 * (spectrum.shape[1] - 1)
     spectrum /= mx * my
     threads = _worth(threads, mx * my)
-
-    # the columns of 2 nx entries are transformed by strips that stay in the cache, unless all of them do
-    width = my // 2 + 1
-    block = BLOCK * threads if mx * my > WHOLE * BLOCK else mx * my
-    height, strip = max(1, block // my), min(width, max(16, block // mx))
-    divided = strip < width
-    dtype = np.result_type(spectrum, 1j)
-    size = nx * width if divided else mx * width
-    flat = (
-        np.empty(2 * size, spectrum.dtype) if memory is None or memory.size < 2 * size else memory[: 2 * size]
-    )
-    wave = flat.view(dtype).reshape(-1, width)
-    columns = np.empty((mx, strip), dtype) if divided else wave
-    rows = np.empty((min(height, nx), my), spectrum.dtype)
+    rows, wave = np.zeros((nx, my)), np.empty((mx, my // 2 + 1), complex)
 
     def apply(p: Array) -> Array:
         """Transform rows, then columns: neither rows of zeros nor unused rows are transformed."""
-        # p may be where the rows of its transform begin, which are longer: the last rows first
-        for i in range(0, nx, height)[::-1]:
-            padded = rows[: min(height, nx - i)]
-            padded[:, :ny] = p[i : i + height]
-            padded[:, ny:] = 0
-            ducc0.fft.r2c(padded, axes=(1,), nthreads=threads, out=wave[i : i + len(padded)])
-        for j in range(0, width, strip):
-            of_strip = slice(j, min(j + strip, width))
-            column, factor = columns[:, : of_strip.stop - j], spectrum[:, of_strip]
-            if divided:
-                column[:nx] = wave[:, of_strip]
-            column[nx:] = 0
-            ducc0.fft.c2c(column, axes=(0,), nthreads=threads, out=column)
-            column[: half + 1] *= factor
-            column[half + 1 :] *= factor[half - 1 : 0 : -1]
-            ducc0.fft.c2c(column, axes=(0,), forward=False, nthreads=threads, out=column)
-            if divided:
-                wave[:, of_strip] = column[:nx]
-        # in given memory the rows of u overwrite those of their transform, twice as long
-        u = np.empty((nx, ny), spectrum.dtype) if memory is None else flat[: nx * ny].reshape(nx, ny)
-        for i in range(0, nx, height):
-            padded = rows[: min(height, nx - i)]
-            of_block = wave[i : i + len(padded)]
-            ducc0.fft.c2r(of_block, axes=(1,), lastsize=my, forward=False, nthreads=threads, out=padded)
-            u[i : i + height] = padded[:, :ny]
-        return u
+        rows[:, :ny] = p
+        rows[:, ny:] = 0
+        ducc0.fft.r2c(rows, axes=(1,), nthreads=threads, out=wave[:nx])
+        wave[nx:] = 0
+        ducc0.fft.c2c(wave, axes=(0,), nthreads=threads, out=wave)
+        wave[: half + 1] *= spectrum
+        wave[half + 1 :] *= spectrum[half - 1 : 0 : -1]
+        ducc0.fft.c2c(wave, axes=(0,), forward=False, nthreads=threads, out=wave)
+        ducc0.fft.c2r(wave[:nx], axes=(1,), lastsize=my, forward=False, nthreads=threads, out=rows)
+        return rows[:, :ny].copy()
 
     return apply

@@ -17,17 +17,13 @@ from semianalytic.edge_shape import Shape, Step
 from semianalytic.level import Level, LevelProblem
 from semianalytic.smooth_edge import EdgePatches
 
-__all__ = ["corrected"]
-
 Array = NDArray[np.floating]
 
 ROUNDS = 8  # at most
 HELD = 2  # rounds from patches alone in which the edge is held
 STILL = 5e-4  # of a patch: a smaller movement of the edge in a round leaves less than a ten-thousandth
-MISFIT, COARSE_MISFIT = (
-    0.3,
-    2.0,
-)  # patches by which the pressures near a smooth edge may miss f; in the first rounds
+# patches by which the pressures near a smooth edge may miss f; in the first rounds
+MISFIT, COARSE_MISFIT = 0.3, 2.0
 LOST = 0.2  # of the load, the most that constant patches miss of a pressure with a smooth edge
 INNER = 3e-3  # of the peak, that f may miss inside: ellipses 3e-5, a kink of the indenter's slope 0.1
 OUTER_TERMS = 6  # polynomials of a pressure that is fitted near the edge alone
@@ -41,22 +37,21 @@ RESOLVED = 1.75  # polynomials for each sqrt(patches in a times e asinh(1/e)); u
 THICK = 100.0  # e of a layer so thick that it does not matter
 
 
-def corrected(problem: LevelProblem, start: Shape | None) -> Level:
+def corrected(problem: LevelProblem) -> Level:
     """Contact on a window with its edge corrected; of the patches alone where the edge is not a smooth curve.
 
-    start : shape on a coarser grid, None for that of the patches alone.
+    The rounds start with the shape on the coarser grid, where there is one.
     """
-    gap = problem.gap
     before = problem.before
+    start = None if before is None else before.shape
     if before is not None and start is not None and start.outside:
         start = None if min(start.axes) < FEW_PATCHES * before.grid.d else start
     if start is not None:
         terms = OUTER_TERMS if start.outside else _terms(start, problem.grid.d)
-        level = _rounds(problem, gap, start.with_terms(terms), None)
+        level = _rounds(problem, start.with_terms(terms), None)
         if level is not None:
             return level
-    problem.gap = gap
-    alone = problem.solve(0.0, 0.0)
+    alone = problem.solve()
     p = alone.found.pressure
     shape = _start(problem, p)
     if shape is None:
@@ -64,27 +59,22 @@ def corrected(problem: LevelProblem, start: Shape | None) -> Level:
     # all of the pressure or, where its inside is not smooth, what is near the edge
     outside = () if problem.indenter.round else (replace(shape.with_terms(OUTER_TERMS), outside=True),)
     for first in (shape, *outside):
-        level = _rounds(problem, gap, first, p)
+        level = _rounds(problem, first, p)
         if level is not None:
             return replace(level, convolutions=level.convolutions + alone.convolutions)
-    problem.gap = gap
     return alone
 
 
-def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) -> Level | None:
+def _rounds(problem: LevelProblem, shape: Shape, p: Array | None) -> Level | None:
     """Rounds of fit and contact from a shape; None where the edge that they find is not that of the patches.
 
     p : pressure of the patches alone [Pa], to which the shape is fitted first; None for a shape that is
     fitted.
     """
     grid, (x, y) = problem.grid, problem.centres
-    near, weight, convolutions = _near_influence(problem), grid.weight(gap.shape), 0
+    near, weight, convolutions = _near_influence(problem), grid.weight(problem.gap.shape), 0
     step: Step | None = None
-
-    def deflection(field: Array) -> Array:
-        return np.array(problem.deflection(field))  # its own memory is used again
-
-    fit = partial(edge_shape.fitted, x=x, y=y, deflection=deflection, weight=weight, patch=grid.d)
+    fit = partial(edge_shape.fitted, x=x, y=y, deflection=problem.deflection, weight=weight, patch=grid.d)
     fresh = p is not None
     if p is None:  # f is smoother than the interpolated pressure of the patches
         p = problem.first_guess() if shape.outside else shape.pressure(x, y)
@@ -98,12 +88,10 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
         edge = smooth_edge.edge_patches(shape, p, grid, problem.window)
         if not edge.misfit < COARSE_MISFIT and number >= HELD:
             return None
-        u, missing = smooth_edge.beyond_centres(edge, p, grid, deflection, near)
+        u, missing = smooth_edge.beyond_centres(edge, p, grid, problem.deflection, near)
         if not abs(missing) < LOST * grid.force(p):
             return None
-        problem.gap = gap + u
-        del edge, u  # two hundred numbers a patch at the edge, which the iteration does not need
-        level = problem.solve(0.0, missing, start=p)
+        level = problem.solve(u, missing, start=p)
         convolutions += level.convolutions + 1
         p = level.found.pressure
         if fresh and number < HELD:
@@ -112,7 +100,8 @@ def _rounds(problem: LevelProblem, gap: Array, shape: Shape, p: Array | None) ->
         moved = float(np.abs(step.change[-len(shape.harmonics) :]).sum()) * min(shape.axes)
         if moved < STILL * grid.d:
             break
-    edge = smooth_edge.edge_patches(shape, p, grid, problem.window).averaged
+    edge = smooth_edge.edge_patches(shape, p, grid, problem.window)
+    edge = replace(edge, parts=edge.parts.mean(axis=1, keepdims=True))  # all that is needed from now on
     if not edge.misfit < MISFIT or min(shape.axes) < NARROW * grid.d:
         return None
     either = problem.indenter.round or shape.outside

@@ -28,8 +28,6 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter
 
-__all__ = ["EVEN", "FULL", "HALF", "ROUND", "Shape", "Step", "fitted", "start"]
-
 Array = NDArray[np.floating]
 
 ROUND = (0,)  # harmonics of a contact that is round,
@@ -37,15 +35,11 @@ EVEN = (0, 2, 4, 6, 8, 10)  # even in x and in y,
 HALF = tuple(range(9))  # even in y, beside its mirror image,
 FULL = (0, *(side * n for n in (1, 2, 3, 4, 6, 8, 9, 10) for side in (1, -1)))  # any
 DAMPING = 0.8  # share of the first step of a fit
-FADED = (
-    0.15,
-    0.4,
-)  # t over which a pressure fitted near the edge alone fades towards the inside; so does its fit
+FADED = 0.15, 0.4  # t over which a pressure fitted near the edge alone, and its fit, fade to the inside
 BLUNT = 0.7  # patches from the edge, nearer than which the column of the edge, infinite there, is constant
 SLACK = 0.3  # patches by which the edge may pass the centre of a loaded or of an unloaded patch
 FAR = -0.6  # t beyond which the contour is an ellipse
 WIDEST = 0.3  # largest change of an axis, as a coefficient c
-HELD = 2**24  # numbers of the columns held at a time: 128 megabytes
 ANGLES = 256  # at which a contour that is no ellipse is sampled
 
 
@@ -336,43 +330,23 @@ def _normal_equations(
     patch: float,
     fixed_edge: bool,
 ) -> tuple[Array, Array]:
-    """phi' K phi and phi' K e, of at most ``HELD`` numbers at a time; arguments as in `fitted`."""
-    (nx, ny), k = pressure.shape, len(shape.harmonics)
-    count = k * (len(shape.coefficients) + (0 if fixed_edge else 1))
-    step, batch = max(1, HELD // (count * ny)), max(1, HELD // (nx * ny))
-    blocks = [slice(i, i + step) for i in range(0, nx, step)]
-
-    def at(rows: slice) -> tuple[Array, Array]:
-        """The columns, (count, rows, ny), and the pressure left."""
-        columns = shape.columns(x[rows], y, BLUNT * patch / min(shape.axes))[:count]
-        left = pressure[rows] - replace(shape, outside=False).pressure(x[rows], y)
-        if shape.outside:
-            window = np.clip((FADED[1] - shape.polynomials(x[rows], y)[0]) / (FADED[1] - FADED[0]), 0, 1)
-            columns, left = columns * window, left * window
-        return columns, left
-
-    whole = at(blocks[0]) if len(blocks) == 1 else None
-    normal, right = np.zeros((count, count)), np.zeros(count)
-    for begin in range(0, count, batch):
-        some = slice(begin, min(begin + batch, count))
-        deflected = np.empty((some.stop - begin, nx, ny))
-        for rows in blocks:
-            deflected[:, rows] = (whole or at(rows))[0][some]
-        for field in deflected:
-            field[...] = deflection(field)
-            if weight is not None:
-                field *= weight
-        for rows in blocks:
-            columns, left = whole or at(rows)
-            of_rows = deflected[:, rows].reshape(len(deflected), -1)
-            normal[some] += of_rows @ columns.reshape(count, -1).T
-            right[some] += of_rows @ left.ravel()
-    return normal, right
+    """phi' K phi and phi' K e; arguments as in `fitted`."""
+    count = len(shape.harmonics) * (len(shape.coefficients) + (0 if fixed_edge else 1))
+    columns = shape.columns(x, y, BLUNT * patch / min(shape.axes))[:count]
+    left = pressure - replace(shape, outside=False).pressure(x, y)
+    if shape.outside:
+        window = np.clip((FADED[1] - shape.polynomials(x, y)[0]) / (FADED[1] - FADED[0]), 0, 1)
+        columns, left = columns * window, left * window
+    deflected = np.stack([deflection(column) for column in columns])
+    if weight is not None:
+        deflected *= weight
+    of_columns = deflected.reshape(count, -1)
+    return of_columns @ columns.reshape(count, -1).T, of_columns @ left.ravel()
 
 
 def _between_centres(shape: Shape, loaded: NDArray[np.bool_], x: Array, y: Array, patch: float) -> Shape:
     """The shape with its edge outside the centres of loaded patches and inside those of unloaded ones."""
-    t = np.concatenate([shape.polynomials(row, y)[0] for row in np.array_split(x, max(1, x.size // 64))])
+    t = shape.inside(x, y)
     beside = maximum_filter(loaded, 3) & ~loaded
     slack = 2 * SLACK * patch / min(shape.axes)
     low, high = float(t[loaded].min()), float(t[beside].max(initial=-np.inf))

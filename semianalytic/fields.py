@@ -1,6 +1,6 @@
 """Fields of a contact: ring by ring under its smooth edge, by patches for the rest of the pressure."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,8 +9,6 @@ from semianalytic import patch_field, subsurface
 from semianalytic.inputs import Body
 from semianalytic.level import Level
 from semianalytic.rings import rings_of
-
-__all__ = ["displacement", "displacement_plane", "stress", "stress_of_uncertain_edge", "stress_plane"]
 
 Array = NDArray[np.floating]
 
@@ -28,30 +26,44 @@ def stress(
     Coarser levels are sampled at the same distance from their edge, over their radius.
     """
     points = _points(body, x, y, z, layer)
-    out = np.zeros((len(levels), 6, points[0].size))
     ratios = [_ratio(level, levels[0]) for level in levels]
+    out = np.zeros((len(levels), 6, points[0].size))
+    _add(out, levels, ratios, body, points, subsurface.stress, patch_field.stress)
+    shape = np.broadcast_shapes(*(np.shape(v) for v in (x, y, z)))
+    return np.array([patch_field.tensor(one) for one in out]).reshape(len(levels), 3, 3, *shape)
+
+
+def displacement(levels: Sequence[Level], body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+    """Displacement [m] of each level at points [m], broadcast; shape (len(levels), 3) + points."""
+    points = _points(body, x, y, z, None)
+    ratios = [1.0] * len(levels)
+    out = np.zeros((len(levels), 3, points[0].size))
+    _add(out, levels, ratios, body, points, subsurface.displacement, patch_field.displacement)
+    return out.reshape(len(levels), 3, *np.broadcast_shapes(*(np.shape(v) for v in (x, y, z))))
+
+
+def _add(
+    out: Array,
+    levels: Sequence[Level],
+    ratios: Sequence[float],
+    body: Body,
+    points: tuple[Array, Array, Array, NDArray[np.intp]],
+    on_rings: Callable[..., Array],
+    on_patches: Callable[..., Array],
+) -> None:
+    """Adds the field of each level at points times its ratio, x and y, to ``out``."""
     smooth = [level.smooth(number) for number, level in enumerate(levels)]
     edged = [k for k, one in enumerate(smooth) if one is not None]
     if edged:
-        pressures = [one for one in smooth if one is not None]
-        out[edged] = subsurface.stress(
-            *points, pressures=pressures, body=body, ratios=[ratios[k] for k in edged]
-        )
-    x0, y0, z0, where = points
+        pressures = [smooth[k] for k in edged]
+        out[edged] = on_rings(*points, pressures=pressures, body=body, ratios=[ratios[k] for k in edged])
+    x, y, z, layer = points
     for total, level, one, ratio in zip(out, levels, smooth, ratios, strict=True):
         rough = level.mean if one is None else level.rest
         if rough is not None:
-            total += patch_field.stress(
-                x0 * ratio,
-                y0 * ratio,
-                z0,
-                where,
-                grid_x=level.nodes,
-                pressure=level.grid.whole(rough),
-                body=body,
-            )
-    shape = np.broadcast_shapes(*(np.shape(v) for v in (x, y, z)))
-    return np.array([patch_field.tensor(one) for one in out]).reshape(len(levels), 3, 3, *shape)
+            pressure = level.grid.whole(rough)
+            at = x * ratio, y * ratio, z, layer
+            total += on_patches(*at, grid_x=level.nodes, pressure=pressure, body=body)
 
 
 def stress_of_uncertain_edge(
@@ -65,36 +77,18 @@ def stress_of_uncertain_edge(
     return np.max([np.abs(other - here).max(axis=0) for other in others], axis=0)
 
 
-def displacement(levels: Sequence[Level], body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-    """Displacement [m] of each level at points [m], broadcast; shape (len(levels), 3) + points."""
-    points = _points(body, x, y, z, None)
-    out = np.zeros((len(levels), 3, points[0].size))
-    smooth = [level.smooth(number) for number, level in enumerate(levels)]
-    edged = [k for k, one in enumerate(smooth) if one is not None]
-    if edged:
-        pressures = [one for one in smooth if one is not None]
-        out[edged] = subsurface.displacement(*points, pressures=pressures, body=body)
-    for total, level, one in zip(out, levels, smooth, strict=True):
-        rough = level.mean if one is None else level.rest
-        if rough is not None:
-            pressure = level.grid.whole(rough)
-            total += patch_field.displacement(*points, grid_x=level.nodes, pressure=pressure, body=body)
-    return out.reshape(len(levels), 3, *np.broadcast_shapes(*(np.shape(v) for v in (x, y, z))))
-
-
 def stress_plane(level: Level, body: Body, z: float, layer: int | None) -> Array:
     """Stress tensor [Pa] below every patch centre at depth z [m]; shape (3, 3, n, n)."""
-    number = int(body.layer_of(z, layer))
-    plane = patch_field.stress_plane(z, number, grid_x=level.nodes, body=body)
-    return patch_field.tensor(plane(level.grid.whole(level.mean)))
+    number, pressure = int(body.layer_of(z, layer)), level.grid.whole(level.mean)
+    return patch_field.tensor(
+        patch_field.stress_plane(z, number, grid_x=level.nodes, pressure=pressure, body=body)
+    )
 
 
 def displacement_plane(level: Level, body: Body, z: float) -> Array:
     """Displacement [m] below every patch centre at depth z [m]; shape (3, n, n)."""
-    number = int(body.layer_of(z, None))
-    return patch_field.displacement_plane(z, number, grid_x=level.nodes, body=body)(
-        level.grid.whole(level.mean)
-    )
+    number, pressure = int(body.layer_of(z, None)), level.grid.whole(level.mean)
+    return patch_field.displacement_plane(z, number, grid_x=level.nodes, pressure=pressure, body=body)
 
 
 def _points(

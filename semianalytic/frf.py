@@ -15,23 +15,13 @@ Signs: stress positive in tension, sigma_zz = -p, sigma_Lz = i T0, sigma_Tz = t 
 ``coatings`` ((E, nu, thickness), ...) from the surface down, ``substrate`` (E, nu); Pa, m.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from math import factorial
 from typing import Any, Literal
 
 import numpy as np
 from numpy.polynomial import polynomial
 from numpy.typing import ArrayLike, NDArray
-
-__all__ = [
-    "Load",
-    "compliance",
-    "compliance_excess",
-    "displacement_frf",
-    "homogeneous_displacement",
-    "homogeneous_stress",
-    "stress_frf",
-]
 
 Array = NDArray[Any]
 Coatings = Sequence[tuple[float, float, float]]
@@ -40,30 +30,21 @@ Load = Literal["normal", "in-plane", "anti-plane"]
 _TRACTION: dict[Load, list[float]] = {"normal": [-1.0, 0.0], "in-plane": [0.0, 1.0], "anti-plane": [1.0]}
 
 
-def compliance(k: ArrayLike, coatings: Coatings, substrate: tuple[float, float]) -> Array:
-    """Normal surface compliance M of the layered half-space, relative to the material of its first coating.
+def compliance_excess(k: ArrayLike, coatings: Coatings, substrate: tuple[float, float]) -> Array:
+    """Normal surface compliance M of the layered half-space, relative to its first coating, less 1.
 
         u_z = (1 - nu1) / (G1 k) M(k) p,      M(inf) = 1,      M(0) = E1* / E2*   (E2* of the substrate)
 
-    One coating: closed form of the Papkovich potentials. More: reflection matrices (module docstring).
-    k : wavenumber >= 0 [rad/m], any shape.  Returns M [-], shape of ``k``.
-    """
-    return 1 + compliance_excess(k, coatings, substrate)
+    Without cancellation; M - 1 decays like (k h)^2 exp(-2 k h). One coating: closed form of the Papkovich
+    potentials. More: the waves reflected from the interfaces, by reflection matrices (module docstring).
 
-
-def compliance_excess(k: ArrayLike, coatings: Coatings, substrate: tuple[float, float]) -> Array:
-    """M(k) - 1 without cancellation; it decays like (k h)^2 exp(-2 k h).
-
-    k : wavenumber >= 0 [rad/m], any shape.  Returns [-], shape of ``k``.
+    k : wavenumber >= 0 [rad/m], any shape.  coatings : at least one.  Returns [-], shape of ``k``.
     """
     k = np.asarray(k, dtype=float)
-    if not np.all(k >= 0):
-        raise ValueError(f"k = {np.min(k):g} rad/m; a wavenumber is a length of the wave vector, give k >= 0")
-    if not coatings:
-        return np.zeros_like(k)
     if len(coatings) == 1:
         return _one_coating_excess(k, coatings[0], substrate)
-    return _layered_excess(k, coatings, substrate)
+    u = _fields(k.ravel(), np.zeros(1), 0, coatings, substrate, "normal", _rows_displacement, excess=True)
+    return (u[0, 0] / (2 * (1 - coatings[0][1]))).reshape(k.shape)
 
 
 def _one_coating_excess(
@@ -91,12 +72,6 @@ def _one_coating_excess(
     bending = np.where(x < 1, th * series, u**2 / 4 - x**2 * th)  # th (sinh^2 x - x^2)
     denominator = u * (L * th + Q) + L * Q * th**2 + 4 * kap * bending
     return th * (lam * (u + Q * th) + kap * (u + L * th) + 4 * kap * x * (1 + x)) / denominator
-
-
-def _layered_excess(k: Array, coatings: Coatings, substrate: tuple[float, float]) -> Array:
-    """M - 1 from reflection matrices: the waves reflected from the interfaces to the surface."""
-    u = _fields(k.ravel(), np.zeros(1), 0, coatings, substrate, "normal", _rows_displacement, excess=True)
-    return (u[0, 0] / (2 * (1 - coatings[0][1]))).reshape(k.shape)
 
 
 def stress_frf(
@@ -148,27 +123,6 @@ def displacement_frf(
     return scale * _fields(k, z, layer, coatings, substrate, load, rows, excess)
 
 
-def homogeneous_stress(nu: float, load: Load) -> Array:
-    """c, c' of the stress amplitudes (c + c' k z) e^{-kz} of a homogeneous half-space, (4 or 2, 2)."""
-    return _homogeneous(nu, load, _rows_shear_stress if load == "anti-plane" else _rows_stress)
-
-
-def homogeneous_displacement(E: float, nu: float, load: Load) -> Array:
-    """c, c' [1/Pa] likewise of k u_z, k u_L / i in plane, k u_T anti-plane, (2 or 1, 2)."""
-    G = E / (2 * (1 + nu))
-    if load == "anti-plane":
-        return _homogeneous(nu, load, _rows_shear_displacement) / G
-    return _homogeneous(nu, load, _rows_displacement) / (2 * G)
-
-
-def _homogeneous(nu: float, load: Load, rows: Callable[[float], tuple[Array, Array]]) -> Array:
-    traction = _TRACTION[load]
-    d = np.linalg.solve(_surface_rows(nu, len(traction))[0], traction)
-    down = rows(nu)[0]
-    linear = down[:, 0] * d[1] if d.size == 2 else np.zeros(len(down))
-    return np.stack([down @ d, linear], axis=1)
-
-
 # ---------------------------------------------------- the fields as rows acting on (d1, d2) and (g1, g2)
 def _rows_stress(nu: float) -> tuple[Array, Array]:
     """s_zz, s_Lz / i, s_LL, s_TT from (d1, d2) and from (g1, g2)."""
@@ -195,14 +149,6 @@ def _rows_shear_displacement(nu: float) -> tuple[Array, Array]:
 def _fields(k, z, layer, coatings, substrate, load, rows, excess) -> Array:
     """Rows of fields (n, nz, nk) at depths ``z`` of one layer."""
     k, z = np.atleast_1d(np.asarray(k, dtype=float)), np.atleast_1d(np.asarray(z, dtype=float))
-    if not 0 <= layer <= len(coatings):
-        raise ValueError(f"layer = {layer}; layers count from 0 to {len(coatings)}, the substrate")
-    if excess and layer != 0:
-        raise ValueError(
-            f"excess is relative to the first coating, layer = {layer}; ask for the full response"
-        )
-    if load not in ("normal", "in-plane", "anti-plane"):
-        raise ValueError(f"load = {load!r}; choose 'normal', 'in-plane' or 'anti-plane'")
     down, up = _amplitudes(k, layer, coatings, substrate, load, excess)
     top = sum(h for _, _, h in coatings[:layer])
     ks = k * (z[:, None] - top)

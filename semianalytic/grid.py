@@ -8,15 +8,10 @@ of the grid.
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import RectBivariateSpline
-
-from semianalytic.arrays import blocks, strips, total
-
-__all__ = ["Grid", "Window", "odd", "prolong", "touches_rim", "window_around"]
 
 Array = NDArray[np.floating]
 
@@ -61,23 +56,13 @@ class Grid:
     def force(self, pressure: Array) -> float:
         """Force of a pressure on a window of the patches held [N]."""
         w = self.weight(pressure.shape)
-        return total(pressure if w is None else w * pressure) * self.d**2
-
-    def count(self, marked: NDArray[np.bool_]) -> int:
-        """Patches marked by those held on a window."""
-        w = self.weight(marked.shape)
-        return int(np.count_nonzero(marked) if w is None else w[marked].sum())
+        return float(np.sum(pressure if w is None else w * pressure)) * self.d**2
 
     @property
     def window(self) -> "Window":
         """All the patches held."""
         m = len(self.x)
         return Window(0, m, 0, m)
-
-    @property
-    def mirror(self) -> Literal["reflect", "symmetric"]:
-        """How ``np.pad`` continues a field held beyond the axes: about a patch centre, or a border."""
-        return "reflect" if self.n % 2 else "symmetric"
 
     def across(self, window: "Window") -> "Window":
         """A window on all n x n patches, of one on those held: of a quarter with its mirror images."""
@@ -118,57 +103,6 @@ class Grid:
             ringed[0, :] = ringed[image, :]
             ringed[:, 0] = ringed[:, image]
         return ringed
-
-    @property
-    def _shared(self) -> int:
-        """1 where patches of twice the side share others with their neighbours: one is at the origin."""
-        return int(self.quarter and self.n % 2)
-
-    def merged(self, p: Array) -> Array:
-        """Pressure of the same load [Pa] on patches of twice the side, those at the origin even as p."""
-        for _ in range(2):
-            if self._shared:
-                p = np.pad(p, ((0, 1 - len(p) % 2), (0, 0)))
-                sides = p[1::2] / 4
-                p = p[::2] / 2
-                p[0] += sides[0]
-                p[1:] += sides[: len(p) - 1]
-                p[: len(sides)] += sides
-            else:
-                p = _with_even_rows(p, 0.0 * p[-1:, :])
-                p = (p[::2, :] + p[1::2, :]) / 2
-            p = p.T
-        return p
-
-    def lowest(self, gap: Array) -> Array:
-        """Smallest gap on the patches of ``merged``."""
-        for _ in range(2):
-            if self._shared:
-                gap = np.pad(gap, ((1, 2 - len(gap) % 2), (0, 0)), mode="reflect")
-                gap = np.minimum(np.minimum(gap[:-2:2], gap[1:-1:2]), gap[2::2])
-            else:
-                gap = _with_even_rows(gap, gap[-1:, :])
-                gap = np.minimum(gap[::2, :], gap[1::2, :])
-            gap = gap.T
-        return gap
-
-    def merging(self, window: "Window") -> "Window":
-        """The patches of ``merged`` that have a part of a window."""
-        i1, j1 = (-(-(end + self._shared) // 2) for end in (window.i1, window.j1))
-        return Window(window.i0 // 2, i1, window.j0 // 2, j1)
-
-    def sample(self, heights: Array, half_width: float) -> Array:
-        """Heights given on m x m patches that fill the square of ``half_width``, at these patch centres.
-
-        Between the given centres a linear interpolation, beyond the last ones the last ones.
-        """
-        m = heights.shape[0]
-        if m == self.n:
-            return heights
-        given = Grid(m, 2 * half_width / m).x
-        spline = RectBivariateSpline(given, given, heights, kx=1, ky=1)
-        x = np.clip(self.x, given[0], given[-1])
-        return spline(x, x)
 
 
 def odd(n: float) -> int:
@@ -238,9 +172,7 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     level[beside] = -K2 * (np.maximum(outside, 0.0) * (0.75 * E_star) / K2**0.5) ** (2 / 3)
     rows, columns = window.slices
     level = _linear(_linear(level, source, target.x[rows]).T, source, target.x[columns])
-    for part in blocks(level):
-        level[part] = np.sqrt(np.maximum(level[part], 0.0))
-    return level.T
+    return np.sqrt(np.maximum(level, 0.0)).T
 
 
 def touches_rim(pressure: Array, quarter: bool = False, rings: int = 1) -> bool:
@@ -251,19 +183,11 @@ def touches_rim(pressure: Array, quarter: bool = False, rings: int = 1) -> bool:
 
 def _linear(values: Array, source: Grid, x: Array) -> Array:
     """Linear interpolation along the first index, from the patch centres of the source to x; 0 beyond it."""
-    n, width = values.shape
+    n = len(values)
     at = np.clip((x - source.x[0]) / source.d, 0, n - 1)
     i = np.minimum(at.astype(int), n - 2)
     t = (at - i)[:, None]
-    result: Array = np.empty((len(x), width))
-    for part in strips(len(x), width):
-        low, high = values[i[part]], values[i[part] + 1]
-        result[part, :] = low * (1 - t[part]) + high * t[part]
+    result: Array = values[i] * (1 - t) + values[i + 1] * t
     result[: np.searchsorted(x, -source.half_width), :] = 0.0
     result[np.searchsorted(x, source.half_width, side="right") :, :] = 0.0
     return result
-
-
-def _with_even_rows(a: Array, below: Array) -> Array:
-    """An array of an even number of rows, ``below`` the last one where that is odd."""
-    return np.concat([a, below]) if a.shape[0] % 2 else a

@@ -29,8 +29,6 @@ from numpy.typing import NDArray
 from scipy.fft import fht
 from scipy.special import factorial
 
-__all__ = ["LONG", "NEAR", "USUAL", "LogGrid", "hankel", "log_grid", "near_axis"]
-
 Array = NDArray[Any]
 
 _STEP = np.log(3e10) / 1499
@@ -51,12 +49,7 @@ def _log_grid(n: int) -> LogGrid:
 
 
 USUAL = _log_grid(1500)  # wavenumbers from 1e-8, radii to 1e8
-LONG = _log_grid(1929)  # from 1e-11, to 1e11
-
-
-def log_grid(longest: float) -> LogGrid:
-    """The grid for an F that changes over lengths of up to ``longest`` times L."""
-    return USUAL if longest < 1e4 else LONG
+LONG = _log_grid(1929)  # from 1e-11, to 1e11: for an F that changes over lengths of more than 1e4 L
 
 
 NEAR = 0.1  # r / L

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from semianalytic.inputs import check_finite, check_positive
 
-__all__ = ["Shape", "profile_of"]
-
 Array = NDArray[np.floating]
 Shape = tuple[str, tuple[float, ...]]
 

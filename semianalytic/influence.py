@@ -6,33 +6,27 @@ pressure on another patch, the square of side d:
 
     K_ij = 1/(pi E*) C_ij,    C(x, y) = int int_patch g(r),    g(r) = int_0^inf M(k) J0(kr) dk.
 
-The three conversions from M to C:
+The two conversions from M to C:
 
 split      M = 1 + c e^(-b k) + R(k). The first two are Love's rectangle at the surface and at
            depth b, in closed form; c = M(0)-1 removes the long range. R is small at both ends, so its
            Hankel transform on a logarithmic grid (Hamilton, Mon. Not. R. Astron. Soc. 312 (2000) 257-284)
            serves every length from the thinnest coating to the whole grid at once: within 4e-10 of
-           quadrature for modulus ratios 0.01 to 100, in a twentieth of the time of the FFT.
-split-fft  the same three terms, R by two-dimensional FFT on a domain enlarged 4 times: 1e-5 for coatings of
-           half a patch, 1e-3 to 1e-2 for coatings wider than the grid, whose R does not fit the domain.
+           quadrature for modulus ratios 0.01 to 100.
 plain      M/k times the transform of the patch, aliases summed, FFT on an enlarged domain: Liu and Wang
            (J. Tribol. 124 (2002) 36-45), the conversion of the source paper. The kernel is singular at
            k = 0 and slow to decay; its error is 0.4 % at the loaded patch and more far away.
 """
 
 from collections.abc import Callable
-from math import isqrt
 
 import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
 from semianalytic import halfspace
-from semianalytic.arrays import BLOCK, strips
 from semianalytic.inputs import Body, Numerics
 from semianalytic.response import Response
-
-__all__ = ["plain_coefficients", "remainder_coefficients", "surface_coefficients"]
 
 Array = NDArray[np.floating]
 Function = Callable[[Array], Array]
@@ -48,54 +42,34 @@ def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Ar
 
     n : offsets 0..n-1.  d : side of the patches [m].  Returns shape (n, n), even in both indices.
     """
-    both, enlarge, threads = body.response, numerics.enlarge, numerics.threads
+    both = body.response
     if numerics.conversion == "plain":
         excess = both.excess if both else np.zeros_like
-        K = plain_coefficients(n, d, excess, enlarge=enlarge, threads=threads)
+        K = plain_coefficients(n, d, excess, threads=numerics.threads)
     else:
-        K = halfspace.surface_deflection(n, n, d, d)
+        K = halfspace.surface_deflection(n, d)
         if both:
-            enlarge = enlarge if numerics.conversion == "split-fft" else 0
-            points = numerics.hankel_points
-            K += remainder_coefficients(n, d, both, points=points, enlarge=enlarge, threads=threads)
+            K += remainder_coefficients(n, d, both, points=numerics.hankel_points)
             c, b = both.image
-            of_image = halfspace.surface_deflection(n, n, d, d, b)
+            of_image = halfspace.surface_deflection(n, d, b)
             of_image *= c
             K += of_image
     K *= 1 / (np.pi * body.contact_modulus)
     return K
 
 
-def remainder_coefficients(
-    n: int,
-    d: float,
-    response: Response,
-    *,
-    points: int = 4096,
-    enlarge: int = 0,
-    threads: int = 1,
-) -> Array:
+def remainder_coefficients(n: int, d: float, response: Response, *, points: int = 4096) -> Array:
     """Integral over a patch of the part of g(r) not due to Love's rectangle and its image.
 
         C_ij = int int_patch(i, j) int_0^inf R(k) J0(k r) dk,    R = M - 1 - c e^(-b k)
 
     n : offsets 0..n-1.  d : side of the patches [m].  response : of the surface, with R and its image.
     points : of the logarithmic Hankel grid.
-    enlarge : 0 for the Hankel transform; else the factor by which the domain of a two-dimensional FFT
-    exceeds the kernel's (conversion "split-fft", by NumPy).
     Returns [m], shape (n, n), even in both indices.
     """
-    if enlarge:
-        c, b = response.image
-
-        def shaped(k: Array) -> Array:
-            return response.excess(k) - c * np.exp(-b * k)
-
-        return _by_fft(n, d, shaped, enlarge, 2, 0.0, threads)
-
     g, on_disc = response.radial(points)
     near = 2 * response.first / d  # g is singular no nearer than the image of the surface, at depth 2 h
-    mean = _average(_average(_octant(g, n + 3, d)).T).T[:n, :n]
+    mean = _average(_average(_octant(g, n + 3, d)).T).T
     mean *= d * d
     if near < SMOOTH:
         corner = _corner(g, on_disc, min(int(SMOOTH), n), d, near)
@@ -130,49 +104,37 @@ def plain_coefficients(
 
     Returns [m], shape (n, n), even in both indices.
     """
-    return _by_fft(n, d, lambda k: 1 + excess(k), enlarge, aliases, None, threads)
-
-
-def _by_fft(
-    n: int, d: float, response: Function, enlarge: int, aliases: int, zero: float | None, threads: int
-) -> Array:
-    half = int(ducc0.fft.good_size(enlarge * n, True))
-    m = 2 * half
+    m = 2 * int(ducc0.fft.good_size(enlarge * n, True))
     dk = 2 * np.pi / (m * d)
-    kx = dk * np.arange(half + 1)
-    spectrum = np.zeros((half + 1, half + 1))
-    for sx in range(-aliases, aliases + 1):
-        for sy in range(-aliases, aliases + 1):
-            ax, ay = kx + sx * 2 * np.pi / d, kx + sy * 2 * np.pi / d
-            k = np.hypot(ax[:, None], ay[None, :])
-            shape = np.sinc(ax * d / (2 * np.pi))[:, None] * np.sinc(ay * d / (2 * np.pi))[None, :]
-            k[k == 0] = np.inf
-            k_finite = np.where(np.isinf(k), dk, k)
-            spectrum += np.where(np.isinf(k), 0, response(k_finite.ravel()).reshape(k.shape) / k) * shape
-    if zero is None:
-        # mean of 1/k over the square cell |kx|, |ky| < dk/2
-        M0 = float(response(np.array([1e-6 * dk]))[0])
-        spectrum[0, 0] += M0 * 4 * np.arcsinh(1.0) / dk
+    kx = dk * np.arange(m // 2 + 1)
+    spectrum = np.zeros((kx.size, kx.size))
+    for shift in np.ndindex(2 * aliases + 1, 2 * aliases + 1):
+        ax, ay = (kx + (s - aliases) * 2 * np.pi / d for s in shift)
+        k = np.hypot(ax[:, None], ay[None, :])
+        shape = np.sinc(ax * d / (2 * np.pi))[:, None] * np.sinc(ay * d / (2 * np.pi))[None, :]
+        k[k == 0] = np.inf
+        k_finite = np.where(np.isinf(k), dk, k)
+        M = 1 + excess(k_finite.ravel()).reshape(k.shape)
+        spectrum += np.where(np.isinf(k), 0, M / k) * shape
+    # mean of 1/k over the square cell |kx|, |ky| < dk/2
+    M0 = 1 + float(excess(np.array([1e-6 * dk]))[0])
+    spectrum[0, 0] += M0 * 4 * np.arcsinh(1.0) / dk
     quadrant = ducc0.fft.dct(spectrum, axes=(0, 1), type=1, nthreads=threads)
     return quadrant[:n, :n] * (2 * np.pi / (m * m))
 
 
-def _octant(g: Callable[[Array], Array], n: int, d: float) -> Array:
-    """g at the patch centres, computed in blocks of rows, in each up to its diagonal."""
+def _octant(g: Function, n: int, d: float) -> Array:
+    """g at the patch centres, computed up to the diagonal."""
     table: Array = np.empty((n, n))
-    i, end = np.arange(n, dtype=np.float64), 0
-    while end < n:
-        begin, end = end, min(n, end + max(1, BLOCK // (end + isqrt(BLOCK))))
-        block = g(d * np.hypot(i[begin:end, None], i[None, :end]))
-        table[begin:end, :end] = block
-        table[:end, begin:end] = block.T
+    i, j = np.tril_indices(n)
+    table[i, j] = table[j, i] = g(d * np.hypot(i, j))
     return table
 
 
 def _average(table: Array) -> Array:
-    """Mean over a patch along the first index, in place: (delta/2)/asinh(delta/2) to sixth differences.
+    """Mean over a patch along the first index: (delta/2)/asinh(delta/2) to sixth differences.
 
-    The last three rows, whose neighbours are not in the table, lose their meaning. Returns the table.
+    Of all rows but the last three, whose neighbours are not in the table.
     """
     weights = np.array([1.0, 0, 0, 0])
     for factor, row in (
@@ -183,19 +145,14 @@ def _average(table: Array) -> Array:
         weights += factor * np.array(row)
     first, *others = weights.tolist()
     n = table.shape[0] - 3
-    for columns in strips(table.shape[1], table.shape[0]):
-        strip = table[:, columns]
-        rows = np.concat([strip[3:0:-1, :], strip])
-        mean = rows[3 : n + 3, :] * first
-        for j, weight in enumerate(others, start=1):
-            mean += weight * (rows[3 - j : n + 3 - j, :] + rows[3 + j : n + 3 + j, :])
-        table[:n, columns] = mean
-    return table
+    rows = np.concat([table[3:0:-1], table])
+    mean = table[:n] * first
+    for j, weight in enumerate(others, start=1):
+        mean += weight * (rows[3 - j : n + 3 - j] + rows[3 + j : n + 3 + j])
+    return mean
 
 
-def _gauss_block(
-    mean: Array, g: Callable[[Array], Array], d: float, inner: int, outer: int, reach: float
-) -> None:
+def _gauss_block(mean: Array, g: Function, d: float, inner: int, outer: int, reach: float) -> None:
     """Overwrite the patches inner <= max(i, j) < outer by Gauss quadrature, in place.
 
     reach : distance to the nearest singularity of g in patches, sets the order: error rho^(-2 order).

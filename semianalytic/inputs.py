@@ -8,18 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from semianalytic.response import Layers, Response, response
-
-__all__ = [
-    "COARSEST",
-    "Body",
-    "Numerics",
-    "check_control",
-    "check_finite",
-    "check_positive",
-    "check_truth_value",
-    "undeformed_gap",
-]
+from semianalytic.response import Response, response
 
 COARSEST = 33  # patches a side of the coarsest grid
 
@@ -29,43 +18,31 @@ class Numerics:
     """Numerical parameters; the uncertainty covers those that change a result.
 
     patches : per side of the finest grid.  tolerance : gap and penetration over the approach.
-    conversion : "split", with ``hankel_points``; "split-fft" or "plain", with ``enlarge``.
-    fill : half-width of the grid over the contact radius.
-    edge_correction : False for the patches alone.
+    conversion : "split", with ``hankel_points``, or "plain".
     """
 
     patches: int = 257
     tolerance: float = 1e-8
     max_iterations: int = 600
     conversion: str = "split"
-    hankel_points: int = 4096
-    enlarge: int = 4
-    fill: float = 1.12
-    edge_correction: bool = True
     threads: int = 1
+    hankel_points: int = 4096
 
     def __post_init__(self) -> None:
-        for name in ("patches", "max_iterations", "hankel_points", "enlarge", "threads"):
+        for name in ("patches", "max_iterations", "threads"):
             value = getattr(self, name)
             if not isinstance(value, (int, np.integer)) or isinstance(value, bool):
                 raise ValueError(f"{name} = {value!r}; it has to be an integer")
-        for name in ("tolerance", "fill"):
-            if not _is_number(getattr(self, name)):
-                raise ValueError(f"{name} = {getattr(self, name)!r}; it has to be a number")
-        if self.patches < COARSEST or (self.patches % 2 == 0 and self.edge_correction):
+            if value < 1:
+                raise ValueError(f"{name} = {value}; it must be at least 1")
+        if not _is_number(self.tolerance):
+            raise ValueError(f"tolerance = {self.tolerance!r}; it has to be a number")
+        if self.patches < COARSEST:
             raise ValueError(f"patches = {self.patches}; it must be odd and at least {COARSEST}")
         if not 1e-13 <= self.tolerance < 1:
             raise ValueError(f"tolerance = {self.tolerance:g}; give 1e-13 or more, 1e-8 is the default")
-        if self.conversion not in ("split", "split-fft", "plain"):
-            raise ValueError(f"conversion = {self.conversion!r}; choose split, split-fft or plain")
-        if not 1.05 <= self.fill <= 10:
-            raise ValueError(f"fill = {self.fill:g}; the grid must exceed the contact, give 1.05 to 10")
-        for name in ("max_iterations", "enlarge", "threads"):
-            if getattr(self, name) < 1:
-                raise ValueError(f"{name} = {getattr(self, name)}; it must be at least 1")
-        if self.hankel_points < 512:
-            raise ValueError(f"hankel_points = {self.hankel_points}; give 512 or more, 4096 is the default")
-        check_truth_value(edge_correction=self.edge_correction)
+        if self.conversion not in ("split", "plain"):
+            raise ValueError(f"conversion = {self.conversion!r}; choose split or plain")
 
 
 @dataclass(frozen=True)
@@ -131,15 +108,11 @@ class Body:
         """E* [Pa] of the materials in contact, 1/E* = sum (1 - nu^2)/E of flat and elastic ball."""
         return self.moduli[0] if self.ball is None else 1 / sum(1 / body.moduli[0] for body in self.pair)
 
-    @property
-    def coated(self) -> list[Layers]:
-        """E*/E_i* and the layers of each elastic body with coatings, as `response` takes them."""
-        return [(self.contact_modulus / one.moduli[0], one.layers) for one in self.pair if one.coatings]
-
     @cached_property
     def response(self) -> Response | None:
         """Response of the surfaces in contact, found once for a solve; None where no body is coated."""
-        return response(self.coated) if self.coated else None
+        coated = [(self.contact_modulus / one.moduli[0], one.layers) for one in self.pair if one.coatings]
+        return response(coated) if coated else None
 
     def __getstate__(self) -> dict[str, Any]:
         # pickled without the response, which is found again on use
@@ -195,13 +168,11 @@ def undeformed_gap(name: str, radius: float) -> Callable[[NDArray[Any]], NDArray
 
     Raises ValueError for another name.
     """
-    gaps: dict[str, Callable[[NDArray[Any]], NDArray[Any]]] = {
-        "parabola": lambda r: r**2 / (2 * radius),
-        "sphere": lambda r: r**2 / (radius + np.sqrt(np.maximum(radius**2 - r**2, 0.0))),
-    }
-    if name not in gaps:
-        raise ValueError(f"gap = {name!r}; choose parabola or sphere")
-    return gaps[name]
+    if name == "parabola":
+        return lambda r: r**2 / (2 * radius)
+    if name == "sphere":
+        return lambda r: r**2 / (radius + np.sqrt(np.maximum(radius**2 - r**2, 0.0)))
+    raise ValueError(f"gap = {name!r}; choose parabola or sphere")
 
 
 def check_finite(**values: float) -> None:
@@ -209,6 +180,12 @@ def check_finite(**values: float) -> None:
     for name, value in values.items():
         if not (_is_number(value) and np.isfinite(value)):
             raise ValueError(f"{name} = {value!r}; it has to be a finite number")
+
+
+def check_odd(patches: int) -> None:
+    """Raise ValueError for a grid without a patch in its middle."""
+    if patches % 2 == 0:
+        raise ValueError(f"patches = {patches}; it must be odd and at least {COARSEST}")
 
 
 def check_truth_value(**values: bool) -> None:

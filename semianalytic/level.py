@@ -15,15 +15,11 @@ from semianalytic.prescribed import Prescribed
 from semianalytic.rings import Disc, RingPressure, rings_of
 from semianalytic.smooth_edge import EdgePatches
 
-__all__ = ["Indenter", "Level", "LevelProblem"]
-
 Array = NDArray[np.floating]
 
-SINGLE = 2**20  # patches, above which preconditioner and steps are of single precision,
 SMOOTH = 0.01  # error of the radius at a smooth edge, over M d^2/a with M polynomials: observed at most 0.005
 RIPPLE = 3e-4  # of the peak pressure
 SAMPLED, FAR_INSIDE = 65, 0.6  # patches along a side, and 1 - (r/a)^2, for the misfit inside
-LOOSE = 1e-8  # at this tolerance or above: the iterations were measured to be as many; at 1e-12 more
 
 
 @dataclass(frozen=True)
@@ -68,7 +64,7 @@ class Level:
             return self.shape.radius
         if self.given is not None:
             return self.given.radius
-        loaded = self.grid.count(self.found.pressure > 0)
+        loaded = np.count_nonzero(self.grid.whole(self.found.pressure))
         return float(np.sqrt(loaded / np.pi) * self.grid.d)
 
     @property
@@ -95,19 +91,10 @@ class Level:
 
     @cached_property
     def scalars(self) -> dict[str, float]:
-        return {
-            "contact_radius": self.radius,
-            "approach": self.found.approach,
-            "peak_pressure": self._peak,
-        }
-
-    @property
-    def _peak(self) -> float:
-        """Of the patches, continued between their centres."""
         peak = float(np.max(self.found.pressure))
-        if self.shape is not None:
+        if self.shape is not None:  # continued between the centres of the patches
             peak += _above_highest(self.grid.whole(self.found.pressure))
-        return peak
+        return {"contact_radius": self.radius, "approach": self.found.approach, "peak_pressure": peak}
 
     @cached_property
     def mean(self) -> Array:
@@ -170,43 +157,44 @@ class Level:
         return rest if np.abs(rest).max() > RIPPLE * self.found.pressure.max() else None
 
 
+@dataclass(frozen=True, eq=False)
 class LevelProblem:
     """Contact problem of the indenter on a window of the grid.
 
     gap [m] : on the window, above the level ``datum``.  depth [m] : the largest on the grid above that.
-    before : level that gives the first guess, None for one from the gap.  deflection : u = A p on the window.
-    single : the steps are of single precision, as is u of them.
+    before : level that gives the first guess, None for one from the gap.
     """
 
-    def __init__(
-        self,
-        grid: Grid,
-        gap: Array,
-        depth: float,
-        window: Window,
-        before: Level | None,
-        indenter: Indenter,
-        body: Body,
-        numerics: Numerics,
-        datum: float = 0.0,
-    ) -> None:
-        self.grid, self.gap, self.depth, self.window, self.before = grid, gap, depth, window, before
-        self.indenter, self.body, self.numerics, self.datum = indenter, body, numerics, datum
-        nx, ny = grid.across(window).shape
-        kernel = influence.surface_coefficients(max(nx, ny), grid.d, body, numerics)[:nx, :ny]
-        held, threads = grid.quarter, numerics.threads
-        memory: Array | None = None
-        inverse: Array | None = None
-        self.work: tuple[Array, Array] | None = None
-        if not held:
-            memory, inverse, self.work = _shared_memory(nx, ny, numerics.tolerance >= LOOSE)
-        self.single = memory is not None and memory.dtype == np.float32
-        self.deflection = convolution.even_convolution(kernel, quarter=held, threads=threads, memory=memory)
-        self.precondition = convolution.circulant_inverse(
-            kernel, quarter=held, threads=threads, memory=inverse
+    grid: Grid
+    gap: Array
+    depth: float
+    window: Window
+    before: Level | None
+    indenter: Indenter
+    body: Body
+    numerics: Numerics
+    datum: float = 0.0
+
+    @cached_property
+    def _kernel(self) -> Array:
+        nx, ny = self.grid.across(self.window).shape
+        return influence.surface_coefficients(max(nx, ny), self.grid.d, self.body, self.numerics)[:nx, :ny]
+
+    @cached_property
+    def deflection(self) -> contact.Operator:
+        """u = A p on the window."""
+        return convolution.even_convolution(
+            self._kernel, quarter=self.grid.quarter, threads=self.numerics.threads
         )
 
-    def solve(self, defect: Array | float, missing: float, start: Array | None = None) -> Level:
+    @cached_property
+    def precondition(self) -> contact.Operator:
+        """An approximate inverse of A."""
+        return convolution.circulant_inverse(
+            self._kernel, quarter=self.grid.quarter, threads=self.numerics.threads
+        )
+
+    def solve(self, defect: Array | float = 0.0, missing: float = 0.0, start: Array | None = None) -> Level:
         """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches.
 
         start : first guess of the pressure [Pa], None for `first_guess`.
@@ -215,12 +203,12 @@ class LevelProblem:
         scale = indenter.approach or (before.found.approach if before else self.depth)
         # a flat punch has no depth; its approach is this to a factor of order one
         scale = scale or (indenter.load or 0.0) / (self.body.contact_modulus * grid.half_width)
-        found = contact.solve(
+        problem = contact.Problem(
             self.deflection,
-            self.gap if isinstance(defect, float) else self.gap + defect,
+            self.gap + defect,
             total=None if indenter.load is None else (indenter.load - missing) / grid.d**2,
             approach=None if indenter.approach is None else indenter.approach + self.datum,
-            start=self.first_guess if start is None else start,
+            start=self.first_guess if start is None else start.copy,
             precondition=self.precondition,
             scale=scale,
             tolerance=self.numerics.tolerance,
@@ -228,9 +216,8 @@ class LevelProblem:
             extension=_extension(self.body, grid.d),
             weight=grid.weight(self.gap.shape),
             mirror="mirror" if grid.n % 2 else "reflect",
-            work=self.work,
-            deflection_into=self.deflection if self.single else None,
         )
+        found = contact.solve(problem)
         found = replace(found, approach=found.approach - self.datum)
         load = grid.force(found.pressure) + missing
         # p = E* k u / 2, k at most that of a checkerboard, sqrt(2) pi / d
@@ -248,24 +235,9 @@ class LevelProblem:
         before = self.before
         if before is None:
             approach = self.indenter.approach or 0.25 * self.depth
-            p = self.precondition(np.maximum(np.min(self.gap) + approach - self.gap, 0.0))
-            return np.array(p, np.float64, order="C")  # not in memory that the iteration uses
+            return self.precondition(np.maximum(np.min(self.gap) + approach - self.gap, 0.0))
         p, g, E_star = before.found.pressure, before.found.gap, self.body.contact_modulus
         return prolong(p, g, before.grid, self.grid, self.window, E_star)
-
-
-def _shared_memory(nx: int, ny: int, loose: bool) -> tuple[Array, Array, tuple[Array, Array]]:
-    """Memory of the convolution; parts of it for the preconditioner, for the work of the iteration.
-
-    The convolution is never in use together with the others. All are single above ``SINGLE`` patches where
-    the tolerance is ``loose``. The preconditioner takes and returns the second part of the work.
-    """
-    single, own = loose and nx * ny > SINGLE, nx * ny
-    size = own + convolution.memory_size(nx, ny, padded=False)
-    padded = convolution.memory_size(nx, ny, padded=True, single=single)
-    memory: Array = np.empty(max(padded, size), np.float32 if single else np.float64)
-    inverse = memory[own:size]
-    return memory, inverse, (memory[:own].reshape(nx, ny), inverse[:own].reshape(nx, ny))
 
 
 def _above_highest(p: Array) -> float:

@@ -13,8 +13,6 @@ from semianalytic.grid import Grid
 from semianalytic.inputs import Body, Numerics, undeformed_gap
 from semianalytic.level import Indenter, Level
 
-__all__ = ["Neighbours", "Sphere", "hertz_radius"]
-
 Array = NDArray[np.floating]
 
 STEPS = 0.05, 0.1  # of the load, to the neighbouring contacts
@@ -57,37 +55,33 @@ class Neighbours:
 
     @cached_property
     def stiffness(self) -> tuple[float, float | None]:
-        """d load / d approach [N/m] and its uncertainty."""
-        return _stiffness(self)
+        """d load / d approach [N/m] and its uncertainty.
 
-
-def _stiffness(beside: Neighbours) -> tuple[float, float | None]:
-    """d ln W / d ln delta by central differences, which Hertz's contact makes exact.
-
-    The patches grow with the contact, so that its edge cuts them alike and their errors cancel.
-    """
-    level, body = beside.level, beside.body
-    numerics = replace(beside.numerics, max_iterations=FURTHER * beside.numerics.max_iterations)
-    radius = partial(hertz_radius, beside.sphere.radius, approach=None, body=body)
-    slopes, found = [], [level, level]
-    for step in STEPS:
-        for k, factor in enumerate((1 + step, 1 / (1 + step))):
-            load = level.load * factor
-            size = level.grid.d * radius(load) / radius(level.load)
-            nearest = found[k] if found[k].shape is not None else level
-            start, grid = _stretched(nearest, size, load), replace(level.grid, d=size)
-            pressed = beside.sphere.indenter(load, None, edge_correction=True)
-            found[k] = nested.solve_on(grid, start, pressed, body, numerics)
-        ends = [np.log([one.load, one.found.approach]) for one in found]
-        slopes.append(float(np.divide(*(ends[0] - ends[1]))))
-    slope = slopes[0] + (slopes[0] - slopes[1]) * STEPS[0] ** 2 / (STEPS[1] ** 2 - STEPS[0] ** 2)
-    stiffness = slope * beside.load / beside.approach
-    if beside.uncertainty is None:
-        return stiffness, None
-    error = OF_STEP * abs(slope - slopes[0]) / slope + abs(beside.approach / level.found.approach - 1)
-    # those of the approaches, over the smaller of their differences, whose slope has the larger weight
-    error += max(beside.uncertainty / beside.approach, LEAST) / float(np.log1p(STEPS[0]))
-    return stiffness, stiffness * error
+        From d ln W / d ln delta by central differences, which Hertz's contact makes exact. The patches grow
+        with the contact, so that its edge cuts them alike and their errors cancel.
+        """
+        level, body = self.level, self.body
+        numerics = replace(self.numerics, max_iterations=FURTHER * self.numerics.max_iterations)
+        radius = partial(hertz_radius, self.sphere.radius, approach=None, body=body)
+        slopes, found = [], [level, level]
+        for step in STEPS:
+            for k, factor in enumerate((1 + step, 1 / (1 + step))):
+                load = level.load * factor
+                size = level.grid.d * radius(load) / radius(level.load)
+                nearest = found[k] if found[k].shape is not None else level
+                start, grid = _stretched(nearest, size, load), replace(level.grid, d=size)
+                pressed = self.sphere.indenter(load, None, edge_correction=True)
+                found[k] = nested.solve_on(grid, start, pressed, body, numerics)
+            ends = [np.log([one.load, one.found.approach]) for one in found]
+            slopes.append(float(np.divide(*(ends[0] - ends[1]))))
+        slope = slopes[0] + (slopes[0] - slopes[1]) * STEPS[0] ** 2 / (STEPS[1] ** 2 - STEPS[0] ** 2)
+        stiffness = slope * self.load / self.approach
+        if self.uncertainty is None:
+            return stiffness, None
+        error = OF_STEP * abs(slope - slopes[0]) / slope + abs(self.approach / level.found.approach - 1)
+        # those of the approaches, over the smaller of their differences, whose slope has the larger weight
+        error += max(self.uncertainty / self.approach, LEAST) / float(np.log1p(STEPS[0]))
+        return stiffness, stiffness * error
 
 
 def hertz_radius(radius: float, load: float | None, approach: float | None, body: Body) -> float:

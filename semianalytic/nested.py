@@ -1,6 +1,7 @@
 """Nested iteration: contacts on ever finer grids, each started from the one before."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,18 +12,12 @@ from semianalytic.grid import Grid, Window, odd, touches_rim, window_around
 from semianalytic.inputs import COARSEST, Body, Numerics
 from semianalytic.level import Indenter, Level, LevelProblem
 
-__all__ = ["levels", "solve_on"]
-
 Array = NDArray[np.floating]
 
 STRIDE = 2.8  # of grids that only give the start: iterations on the next one are about as many as by halves
 HALVINGS = 6  # of steps to the lowest point between the patches, off by 1e-4 of the height over a patch
-REFINED = (
-    2.0,
-    1.4,
-    1.0,
-)  # of the patches a side, over those of the grids of a refinement study; of patches alone
-HALVED = (4.0, 2.0, 1.0)
+# of the patches a side, over those of the grids of a refinement study; of patches alone
+REFINED, HALVED = (2.0, 1.4, 1.0), (4.0, 2.0, 1.0)
 
 
 def levels(
@@ -63,21 +58,18 @@ def solve_on(grid: Grid, before: Level | None, indenter: Indenter, body: Body, n
     whole = grid.window
     datum = lowest_point(grid, gap, indenter)
     depth = float(np.max(gap)) - datum
+    of_window = partial(
+        LevelProblem, grid, depth=depth, indenter=indenter, body=body, numerics=numerics, datum=datum
+    )
     if before is not None and not indenter.round:
         before = before.whole if grid.quarter < before.grid.quarter else before
         window = window_around(before.found.pressure, before.grid, grid)
         if window.shape != whole.shape:
-            lowest, gap = grid.lowest(gap), np.array(gap[window.slices], order="C")
-            lowest -= datum
-            problem = LevelProblem(grid, gap, depth, window, before, indenter, body, numerics, datum)
-            level = _solved(problem)
-            del problem  # frees the memory of its transforms for those below
+            level = _solved(of_window(gap=gap[window.slices], window=window, before=before))
             level = _embedded(level, window, depth)
-            if is_alone(level, lowest, window, body, numerics):
+            if is_alone(level, gap - datum, window, body, numerics):
                 return level
-            _, gap = undeformed(replace(grid, quarter=False), indenter)
-    problem = LevelProblem(grid, gap, depth, whole, before, indenter, body, numerics, datum)
-    return _solved(problem)
+    return _solved(of_window(gap=gap, window=whole, before=before))
 
 
 def undeformed(grid: Grid, indenter: Indenter) -> tuple[Grid, Array]:
@@ -117,33 +109,24 @@ def _of_single_precision(level: Level) -> Level:
 
 
 def _solved(problem: LevelProblem) -> Level:
-    if not problem.indenter.edge_correction:
-        return problem.solve(0.0, 0.0)
-    before = problem.before
-    return corrected(problem, None if before is None else before.shape)
+    return corrected(problem) if problem.indenter.edge_correction else problem.solve()
 
 
 def _embedded(level: Level, window: Window, depth: float) -> Level:
-    edge = None if level.edge is None else level.edge.embedded(window.i0, window.j0)
+    edge = level.edge
+    edge = edge and replace(edge, i=edge.i + window.i0, j=edge.j + window.j0)
     found = level.found.embedded(window.slices, level.grid.window.shape, depth)
     return replace(level, found=found, edge=edge)
 
 
-def is_alone(level: Level, lowest: Array, window: Window, body: Body, numerics: Numerics) -> bool:
-    """Whether only the window is in contact: its rim is free, and the gap beyond it open.
-
-    The deflection beyond is computed on patches of twice the side, which at the distance of the window's
-    margin changes it by 1e-3; ``lowest`` is the smallest gap on each.
-    """
+def is_alone(level: Level, gap: Array, window: Window, body: Body, numerics: Numerics) -> bool:
+    """Whether only the window is in contact: its rim is free, and the ``gap`` beyond it stays open."""
     grid, p = level.grid, level.found.pressure
     # two rings: a smooth edge lies up to a patch beyond the last loaded one
     if touches_rim(p[window.slices], grid.quarter, rings=2):
         return False
-    merged = grid.merged(p)
-    n = 2 * len(merged) - grid.n % 2 if grid.quarter else merged.shape[0]
-    kernel = influence.surface_coefficients(n, 2 * grid.d, body, numerics)
-    g = convolution.even_convolution(kernel, quarter=grid.quarter, threads=numerics.threads)(merged)
-    g += lowest
-    g -= level.found.approach
-    g[grid.merging(window).slices] = np.inf
+    kernel = influence.surface_coefficients(grid.n, grid.d, body, numerics)
+    u = convolution.even_convolution(kernel, quarter=grid.quarter, threads=numerics.threads)(p)
+    g = u + gap - level.found.approach
+    g[window.slices] = np.inf
     return bool(np.min(g) > 0)

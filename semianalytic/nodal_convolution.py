@@ -15,16 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
-__all__ = [
-    "Influence",
-    "Lattice",
-    "at_points",
-    "between_sites",
-    "influence_table",
-    "nodal_forces",
-    "samples",
-]
-
 Array = NDArray[Any]
 Influence = Callable[[Array, Array], Array]  # of integer offsets (m, n), each (k,) -> (components, k)
 
@@ -48,16 +38,14 @@ class Lattice:
         return Lattice(self.x0 - 10 * self.dx, self.y0 - 10 * self.dy, 2 * self.dx, 2 * self.dy, force)
 
 
-def nodal_forces(grid_x: Array, grid_y: Array, pressure: Array) -> Lattice:
-    """Forces of the loaded box of the grid."""
-    grid_x, grid_y = np.asarray(grid_x, dtype=float), np.asarray(grid_y, dtype=float)
-    dx = float(grid_x[-1] - grid_x[0]) / (grid_x.size - 1)
-    dy = float(grid_y[-1] - grid_y[0]) / (grid_y.size - 1)
+def nodal_forces(x: Array, pressure: Array) -> Lattice:
+    """Forces of the loaded box of a grid, centred at x along both axes [m]."""
+    d = float(x[-1] - x[0]) / (x.size - 1)
     rows, columns = np.flatnonzero(pressure.any(axis=1)), np.flatnonzero(pressure.any(axis=0))
     if not rows.size:
         rows = columns = np.array([0])
     box = pressure[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
-    return Lattice(grid_x[rows[0]] - dx, grid_y[columns[0]] - dy, dx, dy, samples(box) * (dx * dy))
+    return Lattice(x[rows[0]] - d, x[columns[0]] - d, d, d, samples(box) * d**2)
 
 
 def samples(mean: Array) -> Array:

@@ -37,8 +37,6 @@ from semianalytic.nodal_convolution import (
 from semianalytic.rings import Node
 from semianalytic.subsurface import DEPTHS, PointField, chebyshev, weights
 
-__all__ = ["FieldPlane", "displacement", "displacement_plane", "stress", "stress_plane", "tensor"]
-
 Array = NDArray[Any]
 
 SHALLOW = 3.0  # patches; above this depth a node is not yet a point force: aliases exp(-6 pi) = 7e-9
@@ -63,7 +61,7 @@ def stress(
     pressure : mean of p over each patch [Pa], (n, n), centred at grid_x along both axes [m], which are
     uniform.  Returns xx, yy, zz, xy, xz, yz [Pa], (6,) + points.
     """
-    return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_x, pressure), _stress_field(body))
+    return _evaluate(x, y, z, layer, nodal_forces(grid_x, pressure), _stress_field(body))
 
 
 def tensor(components: Array) -> Array:
@@ -86,56 +84,31 @@ def displacement(
 
     Returns u[i, ...] [m], shape (3,) + points; u_z into the solid.
     """
-    return _evaluate(x, y, z, layer, nodal_forces(grid_x, grid_x, pressure), _displacement_field(body))
+    return _evaluate(x, y, z, layer, nodal_forces(grid_x, pressure), _displacement_field(body))
 
 
-@dataclass(frozen=True, eq=False)
-class FieldPlane:
-    """Six stresses or three displacements at one depth below every patch centre, for any pressure.
-
-    spectrum : transformed influence of a node, (6 or 3, mx, my/2 + 1).  size : (mx, my).  shape : (nx, ny).
-    """
-
-    spectrum: Array
-    size: tuple[int, int]
-    shape: tuple[int, int]
-    area: float
-
-    def __call__(self, pressure: Array, *, threads: int = 1) -> Array:
-        """Stresses xx, yy, zz, xy, xz, yz [Pa] or u_x, u_y, u_z [m], (n, nx, ny), by n + 1 FFTs.
-
-        pressure : [Pa], (nx, ny).
-        """
-        if pressure.shape != self.shape:
-            raise ValueError(f"pressure has shape {pressure.shape}; this plane was set up for {self.shape}")
-        nx, ny = self.shape
-        force = rfft2(samples(pressure) * self.area, self.size, workers=threads)
-        out = np.empty((len(self.spectrum), nx, ny))
-        for component, part in zip(out, self.spectrum, strict=True):
-            component[:] = irfft2(part * force, self.size, workers=threads)[
-                nx + 1 : 2 * nx + 1, ny + 1 : 2 * ny + 1
-            ]
-        return out
+def stress_plane(z: float, layer: int, *, grid_x: Array, pressure: Array, body: Body) -> Array:
+    """Stress below all patch centres at depth z [m], (6, n, n), by seven FFTs; arguments as in `stress`."""
+    return _plane(z, layer, grid_x, pressure, _stress_field(body))
 
 
-def stress_plane(z: float, layer: int, *, grid_x: Array, body: Body) -> FieldPlane:
-    """Set up the convolution for all patch centres at depth z [m]; arguments as in `stress`."""
-    return _plane(z, layer, grid_x, _stress_field(body))
+def displacement_plane(z: float, layer: int, *, grid_x: Array, pressure: Array, body: Body) -> Array:
+    """Displacement below all patch centres, (3, n, n), by four FFTs; arguments as in `displacement`."""
+    return _plane(z, layer, grid_x, pressure, _displacement_field(body))
 
 
-def displacement_plane(z: float, layer: int, *, grid_x: Array, body: Body) -> FieldPlane:
-    """Set up the convolution for all patch centres at depth z [m]; arguments as in `displacement`."""
-    return _plane(z, layer, grid_x, _displacement_field(body))
-
-
-def _plane(z: float, layer: int, grid_x: Array, field: "_Field") -> FieldPlane:
-    nx = ny = len(grid_x)
-    unit = nodal_forces(grid_x, grid_x, np.ones((nx, ny)))
-    ((influence, _),) = field.influences(np.array([float(z)]), layer, unit.dx)
+def _plane(z: float, layer: int, grid_x: Array, pressure: Array, field: "_Field") -> Array:
+    n, d = len(grid_x), float(grid_x[-1] - grid_x[0]) / (len(grid_x) - 1)
+    ((influence, _),) = field.influences(np.array([float(z)]), layer, d)
     # forces reach one patch beyond the grid, see `samples`
-    table = influence_table(influence, np.arange(-nx, nx + 1), np.arange(-ny, ny + 1), field.odd_in_y)
-    size = (next_fast_len(2 * nx + 1, real=True), next_fast_len(2 * ny + 1, real=True))
-    return FieldPlane(rfft2(table, size), size, (nx, ny), unit.dx**2)
+    offsets = np.arange(-n, n + 1)
+    size = (next_fast_len(2 * n + 1, real=True),) * 2
+    force = rfft2(samples(pressure) * d**2, size)
+    out = np.empty((field.components, n, n))
+    table = influence_table(influence, offsets, offsets, field.odd_in_y)
+    for component, part in zip(out, table, strict=True):
+        component[:] = irfft2(rfft2(part, size) * force, size)[n + 1 : 2 * n + 1, n + 1 : 2 * n + 1]
+    return out
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,15 +165,12 @@ def _influence(point: PointField, z: float, d: float, near: Array | None, m: Arr
 
 
 def _stress_field(body: Body) -> _Field:
-    response = subsurface.stress_response(body.materials[0][1], body)
-    point = partial(PointField.of, body=body, response=response)
+    point = partial(PointField.of, response=subsurface.stress_response(body))
     return _Field(partial(subsurface.stress, body=body), point, 6, odd_in_y=(3, 5))
 
 
 def _displacement_field(body: Body) -> _Field:
-    E, nu, *_ = body.materials[0]
-    response = subsurface.displacement_response(E, nu, body)
-    point = partial(PointField.of, body=body, response=response)
+    point = partial(PointField.of, response=subsurface.displacement_response(body))
     return _Field(partial(subsurface.displacement, body=body), point, 3, odd_in_y=(1,))
 
 

@@ -17,7 +17,10 @@ T0 = 1, t = 1. Displacements follow the same pattern, with U = u_L and V = u_T:
     u_z = H0[u_z] - f cos t H1[u_z]     u_x = -cos t H1[U] - f (H0[U + V] - cos 2t H2[U - V]) / 2
                                         u_y = -sin t H1[U] + f sin 2t H2[U - V] / 2
 
-Every radial function is tabulated once per depth over asinh(r / L), which resolves r = 0 as well as large r.
+Every radial function of the layers is tabulated once per depth over asinh(r / L), which resolves r = 0 as
+well as large r. Those of a homogeneous half-space are in closed form, K. L. Johnson, Contact Mechanics,
+Cambridge University Press, 1985, sections 3.2 and 3.6: derivatives of V = 1/rho, of chi = ln(rho + z) and of
+F1 = z ln(rho + z) - rho.
 """
 
 from collections.abc import Callable
@@ -29,26 +32,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from semianalytic import halfspace
 from semianalytic.frf import Load, displacement_frf, stress_frf
-from semianalytic.hankel import NEAR, LogGrid, hankel, log_grid, near_axis
+from semianalytic.hankel import LONG, NEAR, USUAL, hankel, near_axis
 from semianalytic.inputs import Body
 
-__all__ = [
-    "PointForce",
-    "combine_displacement",
-    "combine_stress",
-    "directions",
-    "displacement_below",
-    "displacement_columns",
-    "half_space_displacement",
-    "half_space_stress",
-    "stress_below",
-    "stress_columns",
-]
-
 Array = NDArray[Any]
-Field = Callable[[Array, Array], Array]
 Response = Callable[[Load], Array]
 
 _INNER = np.linspace(0, NEAR, 60, endpoint=False)  # r / L of the table, as dense as beyond
@@ -68,30 +56,40 @@ def stress_below(z: Array, layer: int, scale: float, body: Body, *, excess: bool
     z : (nz,) [m].  scale : L [m] such that the response decays at least like exp(-k L).
     body : the layers, and the friction.  excess : leave out the homogeneous half-space of the first coating.
     """
-    grid = _grid(body, scale)
-    k = grid.wavenumbers / scale
-
-    def response(load: Load) -> Array:
-        return stress_frf(k, z, layer, **body.layers, load=load, excess=excess)
-
-    columns = [_radial(F, m, scale, grid) for F, m in stress_columns(response, body.friction)]
-    return _tabulate(columns, grid, scale)
+    return _tables(stress_frf, stress_columns, z, layer, scale, body, excess=excess, over_k=False)
 
 
 def displacement_below(
     z: Array, layer: int, scale: float, body: Body, *, excess: bool = False
 ) -> list[PointForce]:
     """Displacement below a point force at each depth ``z`` of one layer; arguments as in `stress_below`."""
-    grid = _grid(body, scale)
-    k = grid.wavenumbers / scale
+    return _tables(displacement_frf, displacement_columns, z, layer, scale, body, excess=excess, over_k=True)
 
-    def response(load: Load) -> Array:
-        return displacement_frf(k, z, layer, **body.layers, load=load, excess=excess)
 
-    columns = [
-        _radial(F, m, scale, grid, over_k=True) for F, m in displacement_columns(response, body.friction)
-    ]
-    return _tabulate(columns, grid, scale)
+def _tables(
+    frf: Callable[..., Array],
+    columns: Callable[[Response, float], list[tuple[Array, int]]],
+    z: Array,
+    layer: int,
+    scale: float,
+    body: Body,
+    *,
+    excess: bool,
+    over_k: bool,
+) -> list[PointForce]:
+    """Splines through the radial functions, at scale times ``_INNER`` and all radii beyond."""
+    # a film E, h stretches on a base E' over a length h E/E', bends over less
+    moduli = [material[0] for material in body.materials]
+    grid = USUAL if sum(body.thickness) * max(moduli) / min(moduli) / scale < 1e4 else LONG
+    beyond = grid.radii >= NEAR
+    response = partial(frf, grid.wavenumbers / scale, z, layer, **body.layers, excess=excess)
+    radial = []
+    for F, order in columns(lambda load: response(load=load), body.friction):
+        inner = near_axis(F, order, scale, scale * _INNER, over_k=over_k, grid=grid)
+        outer = hankel(F, order, scale, over_k=over_k, grid=grid)[:, beyond]
+        radial.append(np.concatenate([inner, outer], axis=1))
+    nodes = np.arcsinh(np.concatenate([_INNER, grid.radii[beyond]]))
+    return [PointForce(CubicSpline(nodes, table), scale) for table in np.stack(radial, axis=-1)]
 
 
 def stress_columns(response: Response, friction: float) -> list[tuple[Array, int]]:
@@ -118,53 +116,6 @@ def displacement_columns(response: Response, friction: float) -> list[tuple[Arra
         (V,) = response("anti-plane")
         columns += [(uz, 1), (U + V, 0), (U - V, 2)]
     return columns
-
-
-def stress_columns_of_lines(field: Field, reach: Array, friction: float) -> list[Array]:
-    """Radial functions at ``reach`` [m] of a point force, from its stress on the two axes.
-
-    field(x, y) : xx, yy, zz, xy, xz, yz below a normal and below a tangential unit force, (2, 6, n).
-    """
-    zero = np.zeros_like(reach)
-    (xx, yy, zz, _, xz, _), (xx_t, yy_t, zz_t, _, xz_t, _) = field(reach, zero)
-    columns = [zz, (xx + yy) / 2, -xz, (yy - xx) / 2]
-    if friction:
-        _, (_, _, _, xy_90, xz_90, _) = field(zero, reach)
-        E_less_G, E_plus_G = yy_t - xx_t, -2 * xy_90
-        columns += [-zz_t, -(xx_t + yy_t) / 2, -xz_t - xz_90, xz_t - xz_90]
-        columns += [(E_plus_G + E_less_G) / 2, (E_plus_G - E_less_G) / 2]
-    return columns
-
-
-def displacement_columns_of_lines(field: Field, reach: Array, friction: float) -> list[Array]:
-    """The same of the displacement, (2, 3, n)."""
-    zero = np.zeros_like(reach)
-    (ux, _, uz), (ux_t, _, uz_t) = field(reach, zero)
-    columns = [uz, -ux]
-    if friction:
-        _, (ux_90, _, _) = field(zero, reach)
-        columns += [-uz_t, -ux_t - ux_90, ux_t - ux_90]
-    return columns
-
-
-def _grid(body: Body, scale: float) -> LogGrid:
-    """Grid of the transforms: a film E, h stretches on a base E' over a length h E/E', bends over less."""
-    moduli = [material[0] for material in body.materials]
-    return log_grid(sum(body.thickness) * max(moduli) / min(moduli) / scale)
-
-
-def _tabulate(columns: list[Array], grid: LogGrid, scale: float) -> list[PointForce]:
-    """Splines through the radial functions (nz, nr, columns)."""
-    tables = np.stack(columns, axis=-1)
-    nodes = np.arcsinh(np.concatenate([_INNER, grid.radii[grid.radii >= NEAR]]))
-    return [PointForce(CubicSpline(nodes, table), scale) for table in tables]
-
-
-def _radial(F: Array, order: int, scale: float, grid: LogGrid, *, over_k: bool = False) -> Array:
-    """The transform at scale times ``_INNER`` and all radii beyond, (nz, nr)."""
-    inner = near_axis(F, order, scale, scale * _INNER, over_k=over_k, grid=grid)
-    outer = hankel(F, order, scale, over_k=over_k, grid=grid)[:, grid.radii >= NEAR]
-    return np.concatenate([inner, outer], axis=1)
 
 
 def directions(c: Array, s: Array) -> Array:
@@ -201,17 +152,30 @@ def combine_displacement(table: Array, harmonics: Array, f: float) -> Array:
 
 
 def half_space_stress(r: Array, z: Array, nu: float, friction: float) -> Array:
-    """Radial functions of a point force on a homogeneous half-space [1/m^2], (4 or 10, n), at r > 0, z >= 0
-    [m]."""
-    return _half_space(partial(halfspace.point_stress, nu=nu), stress_columns_of_lines, r, z, friction)
+    """Radial functions of a point force on a homogeneous half-space [1/m^2], (4 or 10, n).
+
+    Johnson (1985) eqs. 3.19 and 3.77.  r > 0, z >= 0 [m].
+    """
+    rho = np.hypot(r, z)
+    w, r3, r5, e = rho + z, rho**3, rho**5, 1 - 2 * nu
+    g = 1 / (r3 * w) + 1 / (rho * w) ** 2
+    across, shear = 3 * r * r * z / r5, 3 * r * z * z / r5
+    columns = [-3 * z**3 / r5, (e * z / r3 - across) / 2, shear, (across - e * r * r * g) / 2]
+    if friction:
+        h = 3 / (r5 * w) + 3 / (rho**4 * w * w) + 2 / (rho * w) ** 3
+        s = 1 / (r3 * w * w) + 2 / (rho * rho * w**3)
+        third = -(r**3) * (nu * s + z * h / 2)
+        first = 2 * r * (1 / r3 - 2 * nu / (rho * w * w) - z * g) - third
+        columns += [shear, (1 + nu) * r / r3 - shear / 2, across, -across, first, third]
+    return np.array(columns) / (2 * np.pi)
 
 
 def half_space_displacement(r: Array, z: Array, E: float, nu: float, friction: float) -> Array:
-    """The same of the displacement [m/N], (2 or 5, n)."""
-    return _half_space(
-        partial(halfspace.point_displacement, E=E, nu=nu), displacement_columns_of_lines, r, z, friction
-    )
-
-
-def _half_space(field: Callable[..., Array], columns: Callable, r: Array, z: Array, friction: float) -> Array:
-    return np.array(columns(lambda x, y: field(x, y, z, tangential=bool(friction)), r, friction))
+    """The same of the displacement [m/N], (2 or 5, n). Johnson (1985) eqs. 3.18 and 3.76."""
+    rho = np.hypot(r, z)
+    w, r3, e = rho + z, rho**3, 1 - 2 * nu
+    columns = [2 * (1 - nu) / rho + z * z / r3, r * (e / (rho * w) - z / r3)]
+    if friction:
+        second = r * r * (1 / r3 - e / (rho * w * w))
+        columns += [-r * (z / r3 + e / (rho * w)), -2 / rho - 2 * e / w - second, second]
+    return np.array(columns) * ((1 + nu) / (2 * np.pi * E))

@@ -7,8 +7,6 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Prescribed", "deconvolve", "patch_mean"]
-
 Array = NDArray[np.floating]
 
 

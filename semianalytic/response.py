@@ -24,8 +24,6 @@ from scipy.interpolate import CubicSpline, PPoly, make_interp_spline
 
 from semianalytic import frf
 
-__all__ = ["Layers", "Response", "compliance_excess", "response"]
-
 Array = NDArray[np.floating]
 Function = Callable[[Array], Array]
 Layers = tuple[float, dict[str, Any]]
@@ -34,23 +32,12 @@ SAMPLES = 2000  # of the compliance, for quintic splines: to rounding at any rat
 NEGLIGIBLE = 1e-12  # of the compliance, below which the layers no longer reflect
 
 
-def compliance_excess(bodies: Sequence[Layers], k: Array) -> Array:
-    """M(k) - 1 of ``bodies``: E*/E_i* and the layers of each coated one, as keywords of `frf`.
-
-    k : [rad/m], any shape.
-    """
-    total = np.zeros_like(k)
-    for share, layers in bodies:
-        total += share * frf.compliance_excess(k, **layers)
-    return total
-
-
 def response(bodies: Sequence[Layers]) -> "Response":
-    """The response of ``bodies``, at least one, as in `compliance_excess`."""
+    """The response of ``bodies``, at least one: E*/E_i* and the layers of each, as keywords of `frf`."""
     thickness = [[h for _, _, h in layers["coatings"]] for _, layers in bodies]
     first, total = min(h[0] for h in thickness), max(sum(h) for h in thickness)
     x = np.linspace(np.log(1e-10 / total), np.log(40 / first), SAMPLES)
-    samples = compliance_excess(bodies, np.exp(x))
+    samples = sum(share * frf.compliance_excess(np.exp(x), **layers) for share, layers in bodies)
     spline = PPoly.from_spline(make_interp_spline(x, samples, k=5))
     low, high = np.exp(x[[0, -1]])
 

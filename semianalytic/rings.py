@@ -21,14 +21,11 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from semianalytic.edge_shape import Shape
-
-__all__ = ["Disc", "Node", "RingPressure", "Rings", "SmoothContour", "Twins", "rings_around", "rings_of"]
 
 Array = NDArray[np.floating]
 Step = Callable[[float], float]
@@ -54,16 +51,6 @@ class Rings:
     radius: Array
     weight: Array
     harmonics: Array
-
-
-class RingPressure(Protocol):
-    """A pressure with a smooth edge."""
-
-    def pressure(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """p [Pa], 0 outside."""
-
-    def rings(self, x: Array, y: Array, scale: Array) -> Rings:
-        """Rings around points x, y [m], (n,), below which fields change over depths from ``scale`` [m]."""
 
 
 @lru_cache(maxsize=16)
@@ -95,14 +82,14 @@ class Disc:
         return np.where(square < self.radius**2, self.of_square(square), 0.0)
 
     def rings(self, x: Array, y: Array, scale: Array) -> Rings:
-        """As in `RingPressure`."""
+        """Rings around points x, y [m], (n,), below which fields change over depths from ``scale`` [m]."""
         return _around([self], x, y, scale)[0]
 
 
 def rings_around(
-    pressures: Sequence[RingPressure], ratios: Sequence[float], x: Array, y: Array, scale: Array
+    pressures: "Sequence[RingPressure]", ratios: Sequence[float], x: Array, y: Array, scale: Array
 ) -> list[Rings]:
-    """Rings of each pressure around points x, y [m], (n,), times its ratio; ``scale`` as in `RingPressure`.
+    """Rings of each pressure around points x, y [m], (n,), times its ratio; ``scale`` as in `Disc`.
 
     Round pressures of the same x/a share the places of the rings over a.
     """
@@ -255,11 +242,7 @@ class SmoothContour:
         p = self.shape.pressure(
             x[ring][:, None] + rho[ring][:, None] * cos, y[ring][:, None] + rho[ring][:, None] * sin
         ) * (slope * w)
-        sums, even, odd = [p.sum(axis=1)], p, 0.0 * p
-        for _ in range(3):  # the direction to the point is that from it turned by pi
-            even, odd = odd * sin - even * cos, -even * sin - odd * cos
-            sums += [even.sum(axis=1), odd.sum(axis=1)]
-        return np.array([np.bincount(ring, one, minlength=rho.size) for one in sums])
+        return np.array([np.bincount(ring, one, minlength=rho.size) for one in _sums(p, cos, sin)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,7 +256,7 @@ class Twins:
         return self.one.pressure(x, y) + self.one.pressure(-np.asarray(x), y)
 
     def rings(self, x: Array, y: Array, scale: Array) -> Rings:
-        """As in `RingPressure`."""
+        """As in `Disc`."""
         # psi becomes pi - psi: 1, cos psi, sin psi, cos 2 psi, sin 2 psi, cos 3 psi, sin 3 psi
         signs = np.array([1.0, -1, 1, 1, -1, -1, 1])
         here, there = self.one.rings(x, y, scale), self.one.rings(-x, y, scale)
@@ -298,11 +281,14 @@ class Node:
         return _keys(np.asarray(x) / self.d) * _keys(np.asarray(y) / self.d) / self.d**2
 
     def rings(self, x: Array, y: Array, scale: Array) -> Rings:
-        """As in `RingPressure`; those around the same places, in patches, are kept for other patches."""
+        """As in `Disc`; those around the same places, in patches, are kept for other patches."""
         places = (np.round(x / self.d, 9), np.round(y / self.d, 9), np.minimum(scale / self.d, 1.0))
         unit = _around_node(*(v.tobytes() for v in places))
         harmonics = unit.harmonics / self.d**2
         return Rings(unit.foot, unit.radius * self.d, unit.weight * self.d**2, harmonics)
+
+
+RingPressure = Disc | SmoothContour | Twins | Node  # a pressure with a smooth edge
 
 
 @lru_cache(maxsize=12)
@@ -326,12 +312,16 @@ def _around_node(*places: bytes) -> Rings:
     c, s = np.cos(phi), np.sin(phi)
     p = _keys(x[foot][:, None] + radius[:, None] * c) * _keys(y[foot][:, None] + radius[:, None] * s)
     p *= (2 * width / NODE[0])[:, None]
-    # the direction from the force to the point is that from the point to the force turned by pi
-    harmonics, even, odd = [p.sum(axis=1)], p, 0.0 * p
-    for _ in range(3):
-        even, odd = odd * s - even * c, -even * s - odd * c
-        harmonics += [even.sum(axis=1), odd.sum(axis=1)]
-    return Rings(foot, radius, weight, np.array(harmonics))
+    return Rings(foot, radius, weight, _sums(p, c, s))
+
+
+def _sums(p: Array, cos: Array, sin: Array) -> Array:
+    """P_m of p times the arc, (n, nodes), at the directions from the points: (7, n)."""
+    sums, even, odd = [p.sum(axis=1)], p, 0.0 * p
+    for _ in range(3):  # the direction to the point is that from it turned by pi
+        even, odd = odd * sin - even * cos, -even * sin - odd * cos
+        sums += [even.sum(axis=1), odd.sum(axis=1)]
+    return np.array(sums)
 
 
 def _keys(t: Array) -> Array:

@@ -10,7 +10,7 @@ Indices count the patches held: of a quarter grid those at x >= 0, y >= 0 (``gri
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
@@ -20,14 +20,11 @@ from scipy.ndimage import distance_transform_cdt, maximum_filter
 from semianalytic.edge_shape import Shape
 from semianalytic.grid import Grid, Window
 
-__all__ = ["NEAR", "PARTS", "EdgePatches", "beyond_centres", "edge_patches", "near_influence", "patch_mean"]
-
 Array = NDArray[np.floating]
 Indices = NDArray[np.intp]
 
 FULL = 3  # depth in contact to which patches are integrated by parts: 1 beside an unloaded patch
 PARTS = 15  # of a patch a side, odd
-AT_ONCE = 2000  # patches at the edge: with their parts 100 megabytes
 NEAR = 4  # within which the deflection is that of the parts, beyond it that of their moments
 
 
@@ -54,15 +51,6 @@ class EdgePatches:
     inner: NDArray[np.bool_]
     misfit: float
 
-    def embedded(self, i0: int, j0: int) -> "EdgePatches":
-        """The same on a grid of which the patches were a window that begins at i0, j0."""
-        return replace(self, i=self.i + i0, j=self.j + j0)
-
-    @property
-    def averaged(self) -> "EdgePatches":
-        """The same with one mean a patch, all that is needed once the rounds are over."""
-        return replace(self, parts=self.parts.mean(axis=1, keepdims=True))
-
 
 def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatches:
     """The patches of a window near the edge of ``shape``.  p : pressure of the patches [Pa], on the
@@ -73,7 +61,8 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     depth, beside = (field[1:-1, 1:-1][tuple(slice(-m, None) for m in p.shape)] for field in (depth, beside))
     i, j = np.nonzero(beside & (depth <= FULL))
     x, y = (grid.x[part] for part in window.slices)
-    square = np.concatenate([_sampled(shape, x[i[k]], y[j[k]], grid.d) for k in _some(np.arange(i.size))])
+    # smooth across the edge: the polynomial through these points gives f^2 all over the patch
+    square = shape.square(x[i][:, None, None] + NODES[:, None] * grid.d, y[j][:, None, None] + NODES * grid.d)
     c = square[:, 2, 2]
     slopes = square[:, 4, 2] - square[:, 0, 2], square[:, 2, 4] - square[:, 2, 0]
     slope = np.hypot(*slopes)
@@ -83,25 +72,10 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     parts = np.empty((i.size, PARTS**2))
     # the edge cuts these along x, or along y
     along_x = np.abs(slopes[0]) >= np.abs(slopes[1])
-    for group, swap in ((along_x, False), (~along_x, True)):
-        for k in _some(np.flatnonzero(group)):
-            parts[k] = _parts(square[k].swapaxes(1, 2) if swap else square[k], swap)
+    parts[along_x] = _parts(square[along_x], False)
+    parts[~along_x] = _parts(square[~along_x].swapaxes(1, 2), True)
     centre = np.sqrt(np.maximum(c, 0))
     return EdgePatches(i, j, centre, parts, depth[i, j] == FULL, float(missed.max(initial=0.0)))
-
-
-def _sampled(shape: Shape, x: Array, y: Array, d: float) -> Array:
-    """f^2 at ``NODES`` x ``NODES`` in the patches at centres x, y [m], (k, 5, 5).
-
-    It is smooth across the edge: the polynomial through these points gives f^2 all over the patch.
-    """
-    square: Array = shape.square(x[:, None, None] + NODES[:, None] * d, y[:, None, None] + NODES * d)
-    return square
-
-
-def _some(k: Indices) -> list[Indices]:
-    """Patches in groups of at most ``AT_ONCE``."""
-    return np.array_split(k, -(-k.size // AT_ONCE)) if k.size else []
 
 
 def _parts(square: Array, swap: bool) -> Array:
@@ -109,7 +83,7 @@ def _parts(square: Array, swap: bool) -> Array:
 
     Exact for f^2 linear along that axis, with two Gauss points across.
 
-    square : f^2 of `_sampled`, that axis first.  swap : the axis is y.
+    square : f^2 at ``NODES`` x ``NODES`` in the patches, that axis first, (k, 5, 5).  swap : the axis is y.
     """
     c = square[:, 2, 2]
     bend = 2 * (square[:, 4, 2] + square[:, 0, 2] - 2 * c)  # half the second derivative, in patches
@@ -163,19 +137,18 @@ def beyond_centres(
         moments[1 + di : 1 + di + nx, 1 + dj : 1 + dj + ny] += np.tensordot(_FIELDS @ of_parts, fields, 1)
     for (di, dj), of_fields in zip(np.ndindex(2 * NEAR + 1, 2 * NEAR + 1), near @ _FIELDS.T, strict=True):
         u[di : di + nx, dj : dj + ny] += np.tensordot(of_fields, fields, 1)
-    for k in _some(np.arange(edge.i.size)):
-        i, j = edge.i[k], edge.j[k]
-        sources = edge.parts[k] * own[i, j][:, None]
-        for (di, dj), share in _stencil().items():
-            moments[i + 1 + di, j + 1 + dj] += sources @ share
-        for (di, dj), at_offset in zip(np.ndindex(2 * NEAR + 1, 2 * NEAR + 1), near @ sources.T, strict=True):
-            u[i + di, j + dj] += at_offset
+    i, j = edge.i, edge.j
+    sources = edge.parts * own[i, j][:, None]
+    for (di, dj), share in _stencil().items():
+        moments[i + 1 + di, j + 1 + dj] += sources @ share
+    for (di, dj), at_offset in zip(np.ndindex(2 * NEAR + 1, 2 * NEAR + 1), near @ sources.T, strict=True):
+        u[i + di, j + dj] += at_offset
     moments = _folded(moments, 1, grid)
-    moments[edge.i, edge.j] -= edge.centre
+    moments[i, j] -= edge.centre
     lost = edge.parts.mean(axis=1) - edge.centre
     bend = (fields[2] + fields[4]) / (24 * own)
     missing = float((bend if weight is None else weight * bend).sum())
-    missing += float((lost if weight is None else weight[edge.i, edge.j] * lost).sum())
+    missing += float((lost if weight is None else weight[i, j] * lost).sum())
     return deflection(moments) + _folded(u, NEAR, grid), missing * grid.d**2
 
 

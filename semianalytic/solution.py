@@ -21,8 +21,6 @@ from semianalytic.level import Level
 from semianalytic.neighbours import Neighbours
 from semianalytic.uncertainty import Uncertainty, safety
 
-__all__ = ["Diagnostics", "Solution"]
-
 Array = NDArray[np.floating]
 
 # error of the stress below patches, over the peak pressure, against Hankel quadrature: above 4 patches, below
@@ -230,17 +228,16 @@ class Solution:
         uncertainty of the approach; else the latter everywhere.
         Raises ValueError where no uncertainty was estimated.
         """
-        self._companion()
-        assert self.uncertainty is not None
+        stated = self._stated
         if self._level.smooth() is None:
             u = self.displacement(x, y, z, body)
-            return u, np.full(u.shape, self.uncertainty.approach)
+            return u, np.full(u.shape, stated.approach)
         u, second, third = fields.displacement(self._levels, self._body.named(body), x, y, z)
         last, before = (np.abs(one - other).max(axis=0) for one, other in ((u, second), (second, third)))
         total = self._change(last, before, x, y) + RINGS * self.approach
         if self._level.shape is not None:
             floor = DEFLECTED * self._floor / self.peak_pressure
-            total = total + self.uncertainty.approach + floor * self.approach
+            total = total + stated.approach + floor * self.approach
         return u, np.broadcast_to(total, u.shape).copy()
 
     def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat") -> Array:
@@ -256,17 +253,15 @@ class Solution:
         pressure due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
         Raises ValueError where no uncertainty was estimated.
         """
-        coarser, floor = self._companion()
+        floor = self._other_parameters
         if self._level.given is not None:
             return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
         if self._level.shape is not None:
             return self._smooth_uncertainty(x, y)
         i, j = self.nodes[:, None], self.nodes[None, :]
-        second = coarser.pressure(i, j)
-        ratio = len(self.nodes) / len(coarser.nodes)
-        difference = safety(ratio) * np.abs(self.pressure(i, j) - second)
-        if coarser.coarser is not None:
-            difference = np.maximum(difference, np.abs(second - coarser.coarser.pressure(i, j)) / 6)
+        first, second, third = (self._pressure_of(level, i, j) for level in self._levels)
+        ratio = self._refined
+        difference = np.maximum(safety(ratio) * np.abs(first - second), np.abs(second - third) / 6)
         reach = 2 * int(np.ceil(2 * ratio)) + 1
         widened = maximum_filter(difference, size=reach, mode="nearest")
         total = _at(self.nodes, widened, x, y, order=1) + (2 * floor + RESOLUTION) * self.peak_pressure
@@ -283,7 +278,6 @@ class Solution:
     def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Uncertainty of the pressure [Pa] of a smooth edge: of its shape at the same x/a, and of its
         radius."""
-        assert self.uncertainty is not None
         fine = self._level.shape
         assert fine is not None
         p, second, third = (
@@ -293,21 +287,26 @@ class Solution:
             for level in self._levels
         )
         total = self._change(np.abs(p - second), np.abs(second - third), x, y)
-        _, floor = self._companion()
-        total = total + self._floor + self._near_ripple(x, y) + floor * self.peak_pressure
+        total = total + self._floor + self._near_ripple(x, y) + self._other_parameters * self.peak_pressure
         total = np.maximum(total, self._misfit(x, y, 0.0))
         if self.relative:
             return total
-        shift = self.uncertainty.contact_radius
+        shift = self._stated.contact_radius
         moved = [np.abs(fine.widened(s).pressure(x, y) - p) for s in (-shift, shift)]
         return np.maximum(total, np.max(moved, axis=0))
 
     @cached_property
     def _levels(self) -> list[Level]:
         """The levels of the refinement study, the finest first."""
-        coarser, _ = self._companion()
+        coarser = self.coarser
+        assert coarser is not None
         assert coarser.coarser is not None
         return [one._level for one in (self, coarser, coarser.coarser)]
+
+    @property
+    def _refined(self) -> float:
+        """Patches a side over those of the coarser companion."""
+        return self._level.grid.n / self._levels[1].grid.n
 
     def stress_uncertainty(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
@@ -336,37 +335,30 @@ class Solution:
         the changes of the peak pressure by the other numerical parameters.
         Raises ValueError where no uncertainty was estimated.
         """
-        coarser, floor = self._companion()
-        assert self.uncertainty is not None
-        solid = self._body.named(body)
-        sigma, second, *third = fields.stress(self._levels, solid, x, y, z, layer)
-        change = np.abs(sigma - second).max(axis=(0, 1))
-        before = np.abs(second - third[0]).max(axis=(0, 1)) if third else np.zeros_like(change)
+        stated, floor, solid = self._stated, self._other_parameters, self._body.named(body)
+        sigma, second, third = fields.stress(self._levels, solid, x, y, z, layer)
+        change, before = (np.abs(a - b).max(axis=(0, 1)) for a, b in ((sigma, second), (second, third)))
         if self._level.smooth() is not None:
             total = self._change(change, before, x, y)
             if self._level.shape is not None:
                 shallow = 1 / (1 + np.asarray(z) / (REACH * self.diagnostics.patch_size)) ** 2
                 least = self._floor + self._near_ripple(x, y) + floor * self.peak_pressure
                 deep = np.minimum(np.asarray(z) / (DEEP[1] * self.diagnostics.patch_size), 1.0)
-                scale = self._scale + DEEP[0] * deep * self.uncertainty.contact_radius / self.contact_radius
+                # of all pressures together, felt far from the details of the contact too
+                share = stated.peak_pressure / self.peak_pressure
+                scale = share + DEEP[0] * deep * stated.contact_radius / self.contact_radius
                 total = total + least * shallow + np.abs(sigma).max(axis=(0, 1)) * scale
                 total = np.maximum(total, self._misfit(x, y, z))
                 if not self.relative:
                     total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer))
             total = total + RINGS * self.peak_pressure
         else:
-            change = np.maximum(safety(len(self.nodes) / len(coarser.nodes)) * change, before / 3)
+            change = np.maximum(safety(self._refined) * change, before / 3)
             total = change + floor * self.peak_pressure
             deep = np.asarray(z) >= 4 * self.diagnostics.patch_size
             total += np.where(deep, *EVALUATION[::-1]) * self.peak_pressure
             total += self._rim(x, y, z)
         return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()
-
-    @property
-    def _scale(self) -> float:
-        """Relative uncertainty of all pressures together, of fields far from the details of the contact."""
-        assert self.uncertainty is not None
-        return self.uncertainty.peak_pressure / self.peak_pressure
 
     def _change(self, last: Array, before: Array, x: ArrayLike, y: ArrayLike) -> Array:
         """Error by the patch size from the last change and the one before."""
@@ -427,16 +419,14 @@ class Solution:
         ]
         share, least = FLOOR
         if len(p) < 2:  # patches alone on the coarser grid: the pressure is as uncertain as the radius
-            assert self.uncertainty is not None
-            return share * self.peak_pressure * self.uncertainty.contact_radius / self.contact_radius
+            return share * self.peak_pressure * self._stated.contact_radius / self.contact_radius
         return share * float(np.sqrt(np.mean((p[0] - p[1]) ** 2))) + least * self.peak_pressure
 
     def _uncertain_edge(
         self, solid: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
     ) -> Array:
         """Change of the stress [Pa] by the uncertain radius, within ``NEAR`` patches of the edge."""
-        assert self.uncertainty is not None
-        shift = self.uncertainty.contact_radius
+        shift = self._stated.contact_radius
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         distance = np.hypot(self._to_edge(x, y), z)
         near = distance < NEAR * self.diagnostics.patch_size + shift
@@ -447,12 +437,18 @@ class Solution:
             )
         return change
 
-    def _companion(self) -> tuple["Solution", float]:
-        if self.uncertainty is None or self.coarser is None:
+    @property
+    def _stated(self) -> Uncertainty:
+        if self.uncertainty is None:
             raise ValueError("uncertainty was not estimated; solve with estimate_uncertainty=True")
-        rows = self.uncertainty.budget
+        return self.uncertainty
+
+    @property
+    def _other_parameters(self) -> float:
+        """Relative uncertainty of the peak pressure by all numerical parameters but the patch size."""
+        rows = self._stated.budget
         other = sum(row[2] for row in rows if row[0] == "peak_pressure" and row[1] != "patch size")
-        return self.coarser, other / self.peak_pressure
+        return other / self.peak_pressure
 
 
 def _at(nodes: Array, values: Array, x: ArrayLike, y: ArrayLike, order: int = 3) -> Array:

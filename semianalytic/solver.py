@@ -8,7 +8,6 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +21,7 @@ from semianalytic.inputs import (
     Numerics,
     check_control,
     check_finite,
+    check_odd,
     check_positive,
     check_truth_value,
 )
@@ -30,20 +30,17 @@ from semianalytic.neighbours import Neighbours, Sphere, hertz_radius
 from semianalytic.solution import Solution
 from semianalytic.uncertainty import WIDER, Uncertainty
 
-__all__ = ["indent", "solve", "solve_prescribed"]
-
 Array = NDArray[np.floating]
 Coatings = tuple[tuple[float, float, float], ...]
 Substrate = tuple[float, float]
 Ball = tuple[float, float, Coatings]
 
+FILL = 1.12  # half-width of the grid over the contact radius
 WIDER_SHAPE = 2.0  # first half-width under an indenter that is no sphere, over Hertz's radius
 LARGEST = 0.9  # contact radius over that of the sphere
 BESIDE = 513  # patches a side, at most, of the grid of contacts at neighbouring loads
-ROUGH, ROOMY = (
-    49,
-    1.5,
-)  # patches a side of the grid that finds the contact radius, and its half-width over that
+# patches a side of the grid that finds the contact radius, and its half-width over that
+ROUGH, ROOMY = 49, 1.5
 FINER = 1.4  # patches a side of the next grid over the last
 LARGEST_GRID = 2801  # patches a side of the last for ``accuracy``,
 LARGE_GRID = 1025  # and where refining no longer lessens the uncertainty
@@ -62,9 +59,6 @@ def solve(
     tolerance: float = 1e-9,
     max_iterations: int = 600,
     conversion: str = "split",
-    hankel_points: int = 4096,
-    enlarge: int = 4,
-    fill: float = 1.12,
     edge_correction: bool = True,
     estimate_uncertainty: bool = True,
     threads: int = 1,
@@ -97,44 +91,21 @@ def solve(
     check_control(load, approach)
     check_positive(radius=radius)
     body = _body(coatings, substrate, friction, ball)
-    numerics = Numerics(
-        patches=patches,
-        tolerance=tolerance,
-        max_iterations=max_iterations,
-        conversion=conversion,
-        hankel_points=hankel_points,
-        enlarge=enlarge,
-        fill=fill,
-        edge_correction=edge_correction,
-        threads=threads,
-    )
+    numerics = Numerics(patches, tolerance, max_iterations, conversion, threads)
+    check_truth_value(edge_correction=edge_correction)
+    if edge_correction:
+        check_odd(patches)
     if indenter is not None:
-        return _shaped(
-            profile_of(indenter, radius),
-            fill * WIDER_SHAPE * hertz_radius(radius, load, approach, body),
-            fill,
-            load=load,
-            approach=approach,
-            coatings=coatings,
-            substrate=substrate,
-            friction=friction,
-            ball=ball,
-            patches=patches,
-            tolerance=max(tolerance, 1e-8),
-            max_iterations=max_iterations,
-            conversion=conversion,
-            hankel_points=hankel_points,
-            enlarge=enlarge,
-            edge_correction=edge_correction,
-            estimate_uncertainty=estimate_uncertainty,
-            threads=threads,
-        )
+        pressed = _of_profile(profile_of(indenter, radius), load, approach, edge_correction)
+        half_width = FILL * WIDER_SHAPE * hertz_radius(radius, load, approach, body)
+        numerics = replace(numerics, tolerance=max(tolerance, 1e-8))
+        return _shaped(pressed, half_width, body, numerics, estimate_uncertainty)
     sphere = Sphere(radius, gap)
     pressed = sphere.indenter(load, approach, edge_correction)
-    half_width = fill * _contact_radius(radius, pressed, body, numerics)
+    half_width = FILL * _contact_radius(radius, pressed, body, numerics)
     levels = nested.levels(half_width, pressed, body, numerics, estimate_uncertainty)
     if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
-        raise NotConverged(f"the contact reaches the rim of the grid, fill = {fill:g}; enlarge it")
+        raise NotConverged(f"the contact reaches the rim of the grid at {half_width:g} m; check the moduli")
     estimate = uncertainty.of_contact(levels, pressed, body, numerics) if estimate_uncertainty else None
     reached: list[float] = []
     while estimate and accuracy and edge_correction and not uncertainty.is_met(accuracy, estimate, levels):
@@ -157,24 +128,21 @@ def solve(
     return replace(solution, neighbours=beside)
 
 
-def _shaped(profile: Callable[[Array, Array], Array], half_width: float, fill: float, **of: Any) -> Solution:
-    """Press an indenter over a square ``fill`` times as wide as its contact, which coarse grids find."""
-    coarse = of | {
-        "patches": ROUGH,
-        "tolerance": 1e-4,
-        "edge_correction": False,
-        "estimate_uncertainty": False,
-    }
+def _shaped(
+    indenter: Indenter, half_width: float, body: Body, numerics: Numerics, estimate_uncertainty: bool
+) -> Solution:
+    """Press an indenter over a square ``FILL`` times as wide as its contact, which coarse grids find."""
+    rough, coarse = replace(indenter, edge_correction=False), replace(numerics, patches=ROUGH, tolerance=1e-4)
     for _ in range(20):
         try:
-            found = indent(profile=profile, half_width=half_width, **coarse)
+            found = _pressed(rough, half_width, body, coarse, estimate_uncertainty=False)
         except NotConverged:
             half_width *= 1.5
             continue
         loaded = np.argwhere(found.patch_pressure > 0)
         extent = float(np.abs(found.nodes[loaded]).max()) + found.diagnostics.patch_size
         if extent > half_width / 3:
-            return indent(profile=profile, half_width=fill * extent, **of)
+            return _pressed(indenter, FILL * extent, body, numerics, estimate_uncertainty)
         half_width = ROOMY * extent
     raise NotConverged(f"no contact within {half_width:g} m carries the load; check the indenter")
 
@@ -182,7 +150,7 @@ def _shaped(profile: Callable[[Array, Array], Array], half_width: float, fill: f
 def _contact_radius(radius: float, sphere: Indenter, body: Body, numerics: Numerics) -> float:
     """Contact radius [m] to a few per cent, on a coarse grid of patches alone."""
     a = hertz_radius(radius, sphere.load, sphere.approach, body)
-    coarse = replace(numerics, tolerance=max(1e-3, numerics.tolerance), edge_correction=False)
+    coarse = replace(numerics, tolerance=max(1e-3, numerics.tolerance))
     pressed = replace(sphere, edge_correction=False)
     for _ in range(20):
         grid = Grid(ROUGH, 2 * ROOMY * a / ROUGH)
@@ -204,7 +172,7 @@ def _contact_radius(radius: float, sphere: Indenter, body: Body, numerics: Numer
 
 def indent(
     *,
-    profile: Callable[[Array, Array], Array] | Array,
+    profile: Callable[[Array, Array], Array],
     half_width: float,
     load: float | None,
     coatings: Coatings,
@@ -216,22 +184,19 @@ def indent(
     tolerance: float = 1e-8,
     max_iterations: int = 600,
     conversion: str = "split",
-    hankel_points: int = 4096,
-    enlarge: int = 4,
     edge_correction: bool = True,
     estimate_uncertainty: bool = True,
     threads: int = 1,
 ) -> Solution:
     """Press an indenter of any shape into a coated half-space, over a fixed square.
 
-    profile : height of the indenter's surface above its lowest point [m], as z(x, y) of arrays x, y [m], or
-    as an (n, n) array at the centres of n x n patches that fill the square, in place of ``patches``.
+    profile : height of the indenter's surface above its lowest point [m], as z(x, y) of arrays x, y [m].
     half_width : half the side of the square [m]; no contact beyond it.  load [N] or approach [m], the
     other None; the approach counts from the first touch.  ball : of an elastic indenter, a half-space near
     the contact.  The others as in ``solve``.
 
-    An ellipsoid x^2/2A + y^2/2B, a cone, a punch with a round edge, a measured surface are profiles;
-    contact_radius is that of the disc with the contact's area.
+    An ellipsoid x^2/2A + y^2/2B, a cone, a punch with a round edge are profiles; contact_radius
+    is that of the disc with the contact's area.
     edge_correction : for the square root of the pressure at a smooth edge (``edge_correction``), wherever
     the pressure shows one: ellipses of axes up to 5 : 1 on 257 patches within 4e-6 in peak pressure. Where
     it shows none, under a rough surface, at a corner, or with False: patches alone, of first order at the
@@ -241,48 +206,41 @@ def indent(
 
     Raises ValueError for input without meaning, NotConverged when the iteration stops short.
     """
-    began = time.perf_counter()
     check_control(load, approach)
     check_positive(half_width=half_width)
     check_truth_value(edge_correction=edge_correction)
     body = _body(coatings, substrate, friction, ball)
-    heights = None if callable(profile) else np.asarray(profile, dtype=np.float64)
-    if heights is not None:
-        patches = heights.shape[0]
-        if heights.shape != (patches, patches) or not np.all(np.isfinite(heights)):
-            raise ValueError(f"profile of shape {heights.shape}; give finite heights on n x n patches")
-    numerics = Numerics(
-        patches=patches,
-        tolerance=tolerance,
-        max_iterations=max_iterations,
-        conversion=conversion,
-        hankel_points=hankel_points,
-        enlarge=enlarge,
-        edge_correction=False,  # the patches may be even in number
-        threads=threads,
-    )
+    numerics = Numerics(patches, tolerance, max_iterations, conversion, threads)
+    indenter = _of_profile(profile, load, approach, edge_correction)
+    return _pressed(indenter, half_width, body, numerics, estimate_uncertainty)
 
+
+def _of_profile(
+    profile: Callable[[Array, Array], Array],
+    load: float | None,
+    approach: float | None,
+    edge_correction: bool,
+) -> Indenter:
     def on_mesh(x: Array, y: Array) -> Array:
-        assert callable(profile)
-        z: Array = np.asarray(profile(x[:, None], y[None, :]), dtype=np.float64)
-        return z
+        return np.asarray(profile(x[:, None], y[None, :]), dtype=np.float64)
 
     def gap(grid: Grid) -> Array:
-        if heights is not None:
-            z = grid.sample(heights, half_width)
-        else:
-            z = np.broadcast_to(on_mesh(grid.x, grid.x), (grid.n, grid.n))
-            if not np.isfinite([z.min(), z.max()]).all():
-                raise ValueError("profile(x, y) must return finite heights [m] all over the square")
+        z = np.broadcast_to(on_mesh(grid.x, grid.x), (grid.n, grid.n))
+        if not np.isfinite([z.min(), z.max()]).all():
+            raise ValueError("profile(x, y) must return finite heights [m] all over the square")
         return z
 
-    between = on_mesh if heights is None else None
-    indenter = Indenter(gap, load, approach, False, edge_correction=edge_correction, between=between)
+    return Indenter(gap, load, approach, round=False, edge_correction=edge_correction, between=on_mesh)
+
+
+def _pressed(
+    indenter: Indenter, half_width: float, body: Body, numerics: Numerics, estimate_uncertainty: bool
+) -> Solution:
+    began = time.perf_counter()
     levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)
-    if heights is None and touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
+    if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
         raise NotConverged(
-            f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it, or give "
-            "the profile as an array if it has no surface beyond"
+            f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it"
         )
     estimate = uncertainty.of_contact(levels, indenter, body, numerics) if estimate_uncertainty else None
     return Solution.of_levels(levels[-3:], body, estimate, began)
@@ -297,10 +255,7 @@ def solve_prescribed(
     friction: float = 0.0,
     patches: int = 257,
     conversion: str = "split",
-    hankel_points: int = 4096,
-    enlarge: int = 4,
     estimate_uncertainty: bool = True,
-    threads: int = 1,
 ) -> Solution:
     """Load a disc of ``load_radius`` [m] with a known pressure: no contact, the same fields.
 
@@ -312,12 +267,11 @@ def solve_prescribed(
     began = time.perf_counter()
     check_positive(load_radius=load_radius)
     body = _body(coatings, substrate, friction)
-    numerics = Numerics(
-        patches=patches, conversion=conversion, hankel_points=hankel_points, enlarge=enlarge, threads=threads
-    )
+    numerics = Numerics(patches, conversion=conversion)
+    check_odd(patches)
     if not callable(pressure):
         check_finite(pressure=pressure)
-        pressure = partial(_uniform, float(pressure))
+        pressure = partial(np.full_like, fill_value=float(pressure))
     shape = prescribed.Prescribed(load_radius, pressure)
 
     def level(n: int, wider: float, numerics: Numerics) -> Level:
@@ -337,10 +291,6 @@ def solve_prescribed(
     }
     estimate = Uncertainty.from_levels(fine, half, quarter, variations, factor=1.0, share=1 / 6)
     return Solution.of_levels(levels, body, estimate, began)
-
-
-def _uniform(value: float, r: Array) -> Array:
-    return np.full(np.shape(r), value)
 
 
 def _loaded(grid: Grid, shape: prescribed.Prescribed, body: Body, numerics: Numerics) -> Level:

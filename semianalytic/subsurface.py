@@ -34,18 +34,6 @@ from semianalytic.point_force import (
 )
 from semianalytic.rings import RingPressure, Rings, rings_around
 
-__all__ = [
-    "DEPTHS",
-    "PointField",
-    "Response",
-    "chebyshev",
-    "displacement",
-    "displacement_response",
-    "stress",
-    "stress_response",
-    "weights",
-]
-
 Array = NDArray[Any]
 
 PAIRS = 200_000  # points times rings held at a time
@@ -55,10 +43,14 @@ DEPTHS = 14
 
 @dataclass(frozen=True, eq=False)
 class Response:
-    """Stress or displacement of a unit force: closed(rho, z) of the half-space of the first material,
-    (columns, n); below(z, layer, scale, excess=) the tables of the layers; combine(table, harmonics,
-    friction) the components."""
+    """Stress or displacement of a unit force on ``body``.
 
+    closed(rho, z) : radial functions of the half-space of the first material, (columns, n).
+    below(z, layer, scale, excess=) : tables of the layers.
+    combine(radial, harmonics, friction) : the components.
+    """
+
+    body: Body
     components: int
     closed: Callable[[Array, Array], Array]
     below: Callable[..., list[PointForce]]
@@ -81,9 +73,8 @@ def stress(
     ratios : of x and y under each pressure to those given; 1 by default.
     """
     nu, f = body.materials[0][1], body.friction
-    response = stress_response(nu, body)
-    ratios = [1.0] * len(pressures) if ratios is None else ratios
-    total = _summed(x, y, z, layer, pressures, ratios, body, response)
+    ratios = ratios or [1.0] * len(pressures)
+    total = _summed(x, y, z, layer, pressures, ratios, stress_response(body))
     local = np.array([-(1 + 2 * nu) / 2, -(1 + 2 * nu) / 2, -1.0, 0.0, -f, 0.0])
     surface = (z == 0) & (layer == 0)
     for out, pressure, ratio in zip(total, pressures, ratios, strict=True):
@@ -99,31 +90,24 @@ def displacement(
     *,
     pressures: Sequence[RingPressure],
     body: Body,
+    ratios: Sequence[float] | None = None,
 ) -> Array:
     """Displacement u_x, u_y, u_z [m], (pressures, 3, n); arguments as in `stress`."""
+    return _summed(x, y, z, layer, pressures, ratios or [1.0] * len(pressures), displacement_response(body))
+
+
+def stress_response(body: Body) -> Response:
+    """Of the stress."""
+    nu = body.materials[0][1]
+    closed = partial(half_space_stress, nu=nu, friction=body.friction)
+    return Response(body, 6, closed, partial(stress_below, body=body), combine_stress)
+
+
+def displacement_response(body: Body) -> Response:
+    """Of the displacement."""
     E, nu, *_ = body.materials[0]
-    response = displacement_response(E, nu, body)
-    return _summed(x, y, z, layer, pressures, [1.0] * len(pressures), body, response)
-
-
-def stress_response(nu: float, body: Body) -> Response:
-    """Of the stress, with Poisson's ratio ``nu`` of the first material."""
-    of_force = partial(_stress, nu, body.friction)
-    return Response(6, of_force, partial(stress_below, body=body), combine_stress)
-
-
-def displacement_response(E: float, nu: float, body: Body) -> Response:
-    """Of the displacement, with ``E`` [Pa] and ``nu`` of the first material."""
-    of_force = partial(_displacement, E, nu, body.friction)
-    return Response(3, of_force, partial(displacement_below, body=body), combine_displacement)
-
-
-def _stress(nu: float, f: float, rho: Array, z: Array) -> Array:
-    return half_space_stress(rho, z, nu, f)
-
-
-def _displacement(E: float, nu: float, f: float, rho: Array, z: Array) -> Array:
-    return half_space_displacement(rho, z, E, nu, f)
+    closed = partial(half_space_displacement, E=E, nu=nu, friction=body.friction)
+    return Response(body, 3, closed, partial(displacement_below, body=body), combine_displacement)
 
 
 def _summed(
@@ -133,7 +117,6 @@ def _summed(
     layer: Array,
     pressures: Sequence[RingPressure],
     ratios: Sequence[float],
-    body: Body,
     response: Response,
 ) -> Array:
     """Components (pressures, components, n): the sums over the rings around each point."""
@@ -142,6 +125,7 @@ def _summed(
         return out
     feet, foot = np.unique(np.stack([x, y]), axis=1, return_inverse=True)
     foot = foot.ravel()
+    body = response.body
     first = body.thickness[0] if body.coatings else np.inf
     scale = np.full(feet.shape[1], first, dtype=float)
     np.minimum.at(scale, foot[z > 0], z[z > 0])
@@ -149,24 +133,15 @@ def _summed(
     for number in np.unique(layer):
         members = np.flatnonzero(layer == number)
         members = members[np.argsort(z[members], kind="stable")]
-        tables = _Tables.of(z[members], int(number), body, response)
+        field = PointField.of(z[members], int(number), response)
         for total, rings in zip(out, around, strict=True):
-            total[:, members] = _at_depths(
-                rings, foot[members], z[members], int(number), tables, body, response
-            )
+            total[:, members] = _at_depths(rings, foot[members], z[members], field)
     return out
 
 
-def _at_depths(
-    rings: Rings,
-    foot: NDArray[np.intp],
-    z: Array,
-    layer: int,
-    tables: "_Tables | None",
-    body: Body,
-    response: Response,
-) -> Array:
+def _at_depths(rings: Rings, foot: NDArray[np.intp], z: Array, field: "PointField") -> Array:
     """Components (components, n) at points of one layer with the rings ``foot`` and depths z, ascending."""
+    response = field.response
     begin = np.searchsorted(rings.foot, np.arange(foot.max() + 2))
     count = np.diff(begin)[foot]
     ends = np.cumsum(count)
@@ -181,62 +156,37 @@ def _at_depths(
             begin[foot[some]] - (ends[some] - count[some] - held), count[some]
         )
         depth, rho = z[some][which], rings.radius[ring]
-        table = _columns(rho, depth, layer, tables, response)
-        parts = response.combine(table, rings.harmonics[:, ring] * rings.weight[ring], body.friction)
+        harmonics = rings.harmonics[:, ring] * rings.weight[ring]
+        parts = response.combine(field.radial(rho, depth), harmonics, response.body.friction)
         out[:, some] = [np.bincount(which, part, minlength=stop - start) for part in parts]
         start = stop
     return out
 
 
-def _columns(rho: Array, z: Array, layer: int, tables: "_Tables | None", response: Response) -> Array:
-    """Radial functions (columns, n) of a point force at rho, z [m] of one layer."""
-    closed = [response.closed(rho, z)] if layer == 0 else []
-    return sum([tables(rho, z)] if tables else [], start=sum(closed, start=np.zeros(1)))
-
-
 @dataclass(frozen=True, eq=False)
 class PointField:
-    """Field of a normal force 1 with a tangential force f in one layer, at depths it is made for."""
+    """Field of a normal force 1 with a tangential force f in one layer, at depths it is made for.
 
-    layer: int
-    tables: "_Tables | None"
-    response: Response
-    friction: float
-
-    @classmethod
-    def of(cls, z: Array, layer: int, body: Body, response: Response) -> "PointField":
-        """For the depths z [m], ascending."""
-        return cls(layer, _Tables.of(z, layer, body, response), response, body.friction)
-
-    def __call__(self, x: Array, y: Array, z: float) -> Array:
-        """Components at offsets (x, y) [m] from the force; (components,) + shape of ``x``."""
-        rho = np.maximum(np.hypot(x, y), 1e-9 * z).ravel()
-        table = _columns(rho, np.full(rho.size, z), self.layer, self.tables, self.response)
-        harmonics = directions(x.ravel() / rho, y.ravel() / rho)
-        return self.response.combine(table, harmonics, self.friction).reshape(
-            self.response.components, *x.shape
-        )
-
-
-@dataclass(frozen=True, eq=False)
-class _Tables:
-    """Radial functions of the layers at any depth between those of ``groups``: (least depth, nodes, tables).
-
-    image : depth [m] from which the fields vary in proportion to the distance
+    groups : radial functions of the layers at any depth between those of each: (least depth, nodes, tables).
+    between : whether a group is interpolated between its depths.
+    image : depth [m] from which the fields vary in proportion to the distance.
     """
 
+    layer: int
+    response: Response
     groups: list[tuple[float, Array, list[PointForce]]]
     between: list[bool]
     image: float
 
     @classmethod
-    def of(cls, z: Array, layer: int, body: Body, response: Response) -> "_Tables | None":
-        """For the depths z [m], ascending, of one layer; None of an uncoated body.
+    def of(cls, z: Array, layer: int, response: Response) -> "PointField":
+        """For the depths z [m], ascending, of one layer.
 
         Fields vary with the distance from the force, in the first coating from its image: ``reach``.
         """
+        body = response.body
         if not body.coatings:
-            return None
+            return cls(layer, response, [], [], 0.0)
         image = 2 * body.thickness[0] if layer == 0 else 0.0
         reach = np.abs(image - z)
         # counted from the least, so that a few depths beside each other share a scale and its error
@@ -252,19 +202,28 @@ class _Tables:
                 depths = np.abs(image - nodes)
             tables = response.below(depths, layer, least * 2.0**power, excess=layer == 0)
             groups.append((float(z[here][0]), depths, tables))
-        return cls(groups, between, image)
+        return cls(layer, response, groups, between, image)
 
-    def __call__(self, rho: Array, z: Array) -> Array:
-        """(columns, n) at rho, z [m]."""
+    def __call__(self, x: Array, y: Array, z: float) -> Array:
+        """Components at offsets (x, y) [m] from the force; (components,) + shape of ``x``."""
+        rho = np.maximum(np.hypot(x, y), 1e-9 * z).ravel()
+        radial = self.radial(rho, np.full(rho.size, z))
+        harmonics = directions(x.ravel() / rho, y.ravel() / rho)
+        parts = self.response.combine(radial, harmonics, self.response.body.friction)
+        return parts.reshape(self.response.components, *x.shape)
+
+    def radial(self, rho: Array, z: Array) -> Array:
+        """Radial functions (columns, n) of the force at rho, z [m]."""
+        closed = self.response.closed(rho, z) if self.layer == 0 else 0.0
+        return closed + self._of_layers(rho, z) if self.groups else np.asarray(closed)
+
+    def _of_layers(self, rho: Array, z: Array) -> Array:
         lows = [low for low, *_ in self.groups]
         which = np.searchsorted(lows, z, side="right") - 1
-        out: Array | None = None
+        *_, (first, *_) = self.groups[0]
+        out = np.zeros((first.radial.c.shape[-1], rho.size))
         for k, (_, depths, tables) in enumerate(self.groups):
             here = np.flatnonzero(which == k)
-            if not here.size:
-                continue
-            if out is None:
-                out = np.zeros((tables[0].radial.c.shape[-1], rho.size))
             s = np.arcsinh(rho[here] / tables[0].scale)
             if self.between[k]:
                 nodes, reach = (np.log(np.abs(self.image - one)) for one in (depths, z[here]))
@@ -275,7 +234,6 @@ class _Tables:
                 for i, table in enumerate(tables):
                     at = nearest == i
                     out[:, here[at]] = table.radial(s[at]).T
-        assert out is not None
         return out
 
 

@@ -11,17 +11,6 @@ from semianalytic.grid import odd
 from semianalytic.inputs import Body, Numerics
 from semianalytic.level import Indenter, Level
 
-__all__ = [
-    "WIDER",
-    "Uncertainty",
-    "change",
-    "is_met",
-    "is_stalled",
-    "of_contact",
-    "other_conversion",
-    "safety",
-]
-
 WIDER = 1.25  # the box that tests the domain over the box in use
 SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge
 # Times the change before of the contact radius, which the patches at the edge move to and fro; of its own in
@@ -96,7 +85,9 @@ class Uncertainty:
             rows += [(name, varied, change[name]) for varied, change in variations.items()]
             if moving and name == "contact_radius":
                 rows.append((name, MOVING, float(max(0.0, moving * before - found))))
-        return cls._of(rows)
+        names = ("contact_radius", "approach", "peak_pressure")
+        total = {name: sum(row[2] for row in rows if row[0] == name) for name in names}
+        return cls(**total, budget=tuple(rows))
 
     def relative_to(self, scalars: dict[str, float], without: str = "") -> float:
         """The largest uncertainty over its scalar, but for what is due to the origin ``without``."""
@@ -104,12 +95,6 @@ class Uncertainty:
             sum(value for name, origin, value in self.budget if name == scalar and origin != without) / size
             for scalar, size in scalars.items()
         )
-
-    @classmethod
-    def _of(cls, rows: list[tuple[str, str, float]]) -> "Uncertainty":
-        names = ("contact_radius", "approach", "peak_pressure")
-        total = {name: sum(row[2] for row in rows if row[0] == name) for name in names}
-        return cls(**total, budget=tuple(rows))
 
 
 def change(one: dict[str, float], other: dict[str, float]) -> dict[str, float]:
@@ -134,16 +119,12 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
         few = max(1.0, COARSE * patch) ** 4
         factor, share = np.multiply(SMOOTH, few * (OUTSIDE if last.shape.outside else 1.0))
         edge, inside, moving = few * edge, SECOND * patch**2, few * RADIUS
-        if _unresolved(body, last.grid.d):
+        # patches too large for what happens within the thickness of a film
+        if body.response is not None and body.response.depth < 2 * last.grid.d:
             edge = max(edge, UNRESOLVED * last.grid.d)
     return Uncertainty.from_levels(
         fine, middle, coarse, variations, factor=factor, share=share, edge=edge, inside=inside, moving=moving
     )
-
-
-def _unresolved(body: Body, d: float) -> bool:
-    """Whether patches of side ``d`` [m] are too large for what happens within the thickness of a film."""
-    return body.response is not None and body.response.depth < 2 * d
 
 
 def is_met(accuracy: float, estimate: Uncertainty, levels: list[Level]) -> bool:
@@ -214,7 +195,7 @@ def _of_iteration(level: Level, indenter: Indenter) -> dict[str, float]:
 
 
 def other_conversion(numerics: Numerics) -> Numerics:
-    """Numerics to compare the conversion with: half its points, or the better conversion if there is one."""
+    """Numerics to compare the conversion with: half its points, or the better conversion."""
     if numerics.conversion == "split":
         return replace(numerics, hankel_points=numerics.hankel_points // 2)
     return replace(numerics, conversion="split")

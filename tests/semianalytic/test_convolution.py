@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from semianalytic import convolution, halved_convolution
+from semianalytic import convolution
 
 RNG = np.random.default_rng(7)
 
@@ -66,48 +66,6 @@ def test_a_second_thread_changes_no_more_than_rounding():
     for build in (convolution.even_convolution, convolution.circulant_inverse):
         one, two = build(kernel, threads=1)(p), build(kernel, threads=2)(p)
         np.testing.assert_allclose(two, one, rtol=0, atol=1e-14 * np.abs(one).max())
-
-
-def test_strips_of_columns_and_borrowed_memory_change_no_digit(monkeypatch):
-    kernel, p = RNG.normal(size=(2, 61, 47))
-    for build, padded in ((convolution.even_convolution, True), (convolution.circulant_inverse, False)):
-        whole = build(kernel)(p)
-        with monkeypatch.context() as small:
-            small.setattr(convolution, "BLOCK", 200)
-            np.testing.assert_allclose(build(kernel)(p), whole, rtol=0, atol=1e-14 * np.abs(whole).max())
-            memory = np.empty(convolution.memory_size(61, 47, padded=padded))
-            u = build(kernel, memory=memory)(p)
-        assert np.shares_memory(u, memory)
-        np.testing.assert_allclose(u, whole, rtol=0, atol=1e-14 * np.abs(whole).max())
-
-
-@pytest.mark.parametrize("shape", [(40, 40), (31, 52), (64, 33)])
-@pytest.mark.parametrize("block", [2**15, 200])
-def test_convolution_in_half_the_memory_is_the_same(shape, block, monkeypatch):
-    monkeypatch.setattr(halved_convolution, "BLOCK", block)
-    kernel, p = RNG.normal(size=(2, *shape))
-    expected = convolution.even_convolution(kernel)(p)
-    scale = np.abs(expected).max()
-    memory = np.empty(convolution.memory_size(*shape, padded=True, single=True), np.float32)
-    assert memory.nbytes <= 1.2 * convolution.memory_size(*shape, padded=True) * 8 / 2
-    A, out = convolution.even_convolution(kernel, memory=memory), np.empty(shape)
-    assert A(p, out) is out
-    np.testing.assert_allclose(out, expected, rtol=0, atol=1e-14 * scale)
-    single = A(p.astype(np.float32))
-    assert np.shares_memory(single, memory)
-    np.testing.assert_allclose(single, expected, rtol=0, atol=1e-5 * scale)
-    np.testing.assert_allclose(A(p), expected, rtol=0, atol=1e-14 * scale)
-
-
-def test_inverse_takes_what_is_in_its_own_memory(monkeypatch):
-    monkeypatch.setattr(convolution, "BLOCK", 200)
-    r = np.hypot(*np.meshgrid(np.arange(47), np.arange(61)))
-    memory = np.empty(convolution.memory_size(61, 47, padded=False))
-    P = convolution.circulant_inverse(1 / (1 + r), memory=memory)
-    p = RNG.normal(size=r.shape)
-    expected, own = P(p).copy(), memory[: p.size].reshape(p.shape)
-    own[:] = p
-    np.testing.assert_array_equal(P(own), expected)
 
 
 def test_convolution_is_symmetric():

@@ -1,13 +1,8 @@
-"""Cost of the patches counted without a clock: iterations, convolutions, memory."""
+"""Cost of the patches counted without a clock: iterations, convolutions."""
 
-import tracemalloc
-
-import numpy as np
 import pytest
 
 import semianalytic
-from semianalytic import patch_field
-from semianalytic.inputs import Body
 
 
 def diagnostics(patches, ratio, h):
@@ -40,16 +35,3 @@ def test_coated_solids_take_about_the_iterations_of_the_homogeneous():
 @pytest.mark.parametrize("patches", [256, 512, 1024])
 def test_coated_solids_take_about_the_iterations_of_the_homogeneous_over_the_range(patches):
     check(patches, (0.1, 0.25, 0.5, 2.0, 4.0, 10.0), (0.05, 0.1, 0.3, 1.0, 3.0))
-
-
-def test_stresses_of_a_plane_hold_few_arrays_at_a_time():
-    n = 96
-    x = (np.arange(n) - (n - 1) / 2) * (2.2 / n)
-    pressure = np.sqrt(np.maximum(1 - x[:, None] ** 2 - x[None, :] ** 2, 0))
-    body = Body(((4.0, 0.3, 0.3),), (1.0, 0.3), 0.25)
-    plane = patch_field.stress_plane(0.3, 0, grid_x=x, body=body)
-    tracemalloc.start()
-    result = plane(pressure)
-    peak = tracemalloc.get_traced_memory()[1]
-    tracemalloc.stop()
-    assert 1 < peak / result.nbytes < 10

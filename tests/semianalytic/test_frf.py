@@ -5,7 +5,7 @@ from decimal import Decimal, getcontext
 import numpy as np
 import pytest
 
-from semianalytic.frf import compliance, compliance_excess, displacement_frf, stress_frf
+from semianalytic.frf import compliance_excess, displacement_frf, stress_frf
 
 SOLIDS = {
     "stiff coating": (((4.0, 0.3, 1.0),), (1.0, 0.3)),
@@ -18,6 +18,10 @@ SOLIDS = {
     ),
 }
 solids = pytest.mark.parametrize(("coatings", "substrate"), SOLIDS.values(), ids=SOLIDS.keys())
+
+
+def compliance(k, coatings, substrate):
+    return 1 + compliance_excess(k, coatings, substrate)
 
 
 def direct_solve(k, coatings, substrate, load):
@@ -147,10 +151,6 @@ def test_compliance_runs_from_the_substrate_to_the_coating(coatings, substrate):
     assert compliance(1e4, coatings, substrate) == 1.0
 
 
-def test_the_uncoated_solid_has_compliance_one():
-    assert np.all(compliance(np.logspace(-3, 3, 7), (), (1.0, 0.3)) == 1.0)
-
-
 @solids
 @pytest.mark.parametrize("load", ["normal", "in-plane", "anti-plane"])
 def test_excess_is_the_response_less_that_of_the_homogeneous_coating(coatings, substrate, load):
@@ -220,21 +220,6 @@ def test_anti_plane_fields_continue_across_interfaces():
             above = field(k, [depth], layer, **kwargs)[row]
             below = field(k, [depth], layer + 1, **kwargs)[row]
             np.testing.assert_allclose(above, below, rtol=1e-11, atol=1e-300)
-
-
-def test_negative_wavenumber_is_refused_by_name():
-    with pytest.raises(ValueError, match="k = -1 rad/m"):
-        compliance(-1.0, (), (1.0, 0.3))
-
-
-def test_layer_beyond_the_substrate_is_refused():
-    with pytest.raises(ValueError, match="layer = 2"):
-        stress_frf([1.0], [0.0], 2, coatings=((1.0, 0.3, 1.0),), substrate=(1.0, 0.3), load="normal")
-
-
-def test_unknown_load_is_refused():
-    with pytest.raises(ValueError, match="'sideways'"):
-        stress_frf([1.0], [0.0], 0, coatings=(), substrate=(1.0, 0.3), load="sideways")
 
 
 @pytest.mark.parametrize("ratio", [1e-8, 1e-4, 1e4, 1e6, 1e8])

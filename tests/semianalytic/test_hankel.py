@@ -1,17 +1,17 @@
 """Logarithmic Hankel transform against closed forms, point-force tables against Boussinesq and Cerruti."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from scipy.special import gamma, hyp2f1
 
-from semianalytic import halfspace
 from semianalytic.hankel import LONG, USUAL, hankel
 from semianalytic.inputs import Body
 from semianalytic.point_force import (
-    combine_displacement,
-    combine_stress,
-    directions,
     displacement_below,
+    half_space_displacement,
+    half_space_stress,
     stress_below,
 )
 
@@ -44,18 +44,12 @@ def test_transform_of_polynomials_times_exponentials_is_the_closed_form(order, o
 
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
 def test_point_force_tables_are_boussinesq_and_cerruti(nu):
-    f, E, z = 0.4, 2.0, np.array([1.0, 1.5])
-    rng = np.random.default_rng(3)
-    x, y = rng.normal(size=(2, 40)) * 4
-    x[:3], y[:3] = (1e-9, 1e-3, 100), (0, 2e-3, 40)
-    r, body = np.hypot(x, y), Body((), (E, nu), f)
-    harmonics = directions(x / r, y / r)
-    stresses = stress_below(z, 0, 1.0, body)
-    displacements = displacement_below(z, 0, 1.0, body)
-    for depth, stress, displacement in zip(z, stresses, displacements, strict=True):
-        exact = np.tensordot([1, f], halfspace.point_stress(x, y, np.full(40, depth), nu), 1)
-        found = combine_stress(stress.radial(np.arcsinh(r / stress.scale)).T, harmonics, f)
-        assert np.abs(found - exact).max() < 1e-7 * np.abs(exact).max()
-        exact = np.tensordot([1, f], halfspace.point_displacement(x, y, np.full(40, depth), E, nu), 1)
-        found = combine_displacement(displacement.radial(np.arcsinh(r)).T, harmonics, f)
-        assert np.abs(found - exact).max() < 3e-7 * np.abs(exact).max()
+    E, body = 2.0, Body((), (2.0, nu), 0.4)
+    r, depths = np.append(np.geomspace(1e-9, 100, 40), 1.0), np.array([1.0, 1.5])
+    for below, closed, tolerance in (
+        (stress_below, partial(half_space_stress, nu=nu, friction=0.4), 1e-7),
+        (displacement_below, partial(half_space_displacement, E=E, nu=nu, friction=0.4), 3e-7),
+    ):
+        for z, table in zip(depths, below(depths, 0, 1.0, body), strict=True):
+            exact, found = closed(r, z), table.radial(np.arcsinh(r)).T
+            assert np.abs(found - exact).max() < tolerance * np.abs(exact).max()

@@ -40,23 +40,6 @@ def test_field_is_that_of_the_rings(name, field):
     np.testing.assert_allclose(found, exact, rtol=0, atol=tolerance)
 
 
-@pytest.mark.parametrize(("z", "layer"), [(0.0, 0), (0.02, 0), (0.3, 0), (0.3, 1), (1.0, 2)])
-@pytest.mark.parametrize("field", ["stress", "displacement"])
-def test_plane_is_the_field_at_the_patch_centres(field, z, layer):
-    body = BODIES["two coatings"]
-    plane = getattr(patch_field, field + "_plane")(z, layer, grid_x=X, body=body)
-    whole = plane(GRID["pressure"])
-    i, j = np.array([64, 3, 90, 128, 0]), np.array([64, 10, 70, 128, 77])
-    at_points = getattr(patch_field, field)(X[i], X[j], z, layer, **GRID, body=body)
-    np.testing.assert_allclose(whole[:, i, j], at_points, atol=2e-6)  # coarser lattices deep down
-
-
-def test_plane_refuses_a_pressure_of_another_grid():
-    plane = patch_field.stress_plane(1.0, 0, grid_x=X, body=BODIES["bare"])
-    with pytest.raises(ValueError, match=r"\(3, 3\)"):
-        plane(np.zeros((3, 3)))
-
-
 def test_many_depths_are_interpolated_to_what_each_gives_alone():
     body = Body(((4.0, 0.25, 0.02), (0.3, 0.4, 0.15)), (1.0, 0.3), 0.3)
     rng = np.random.default_rng(11)
@@ -66,6 +49,18 @@ def test_many_depths_are_interpolated_to_what_each_gives_alone():
     together = patch_field.stress(x, y, z, layer, **GRID, body=body)
     alone = [patch_field.stress(x[i], y[i], z[i], layer[i], **GRID, body=body) for i in range(5)]
     np.testing.assert_allclose(together[:, :5], np.stack(alone, axis=-1), rtol=0, atol=2e-6)
+
+
+def test_a_single_patch_deep_down_is_a_point_force():
+    pressure, z = np.zeros((N, N)), 20 * D
+    pressure[N // 2, N // 2] = 1 / D**2
+    body, at = BODIES["two coatings"], (np.array([0.0, 2 * D]), np.zeros(2))
+    for depth in (0.5 * D, z):  # near the patch no node is a point force
+        layer = body.layer_of(np.full(2, depth), None)
+        found = patch_field.stress(*at, depth, layer, grid_x=X, pressure=pressure, body=body)
+        assert np.isfinite(found).all()
+    force = subsurface.PointField.of(np.array([z]), int(layer[0]), subsurface.stress_response(body))
+    np.testing.assert_allclose(found, force(*at, z), rtol=0, atol=1e-2 * np.abs(found).max())
 
 
 def test_no_points_give_no_stress():

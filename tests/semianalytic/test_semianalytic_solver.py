@@ -1,7 +1,7 @@
 """Invariants and limits that a solution must obey, whatever the coating."""
 
 import pickle
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -37,11 +37,6 @@ def sliding():
     return solve(STIFF, friction=0.25)
 
 
-@pytest.fixture(scope="module")
-def uncorrected():
-    return solve(STIFF, edge_correction=False)
-
-
 @pytest.mark.parametrize("coatings", [(), ((E, NU, 0.3 * A_H),), ((E, NU, 0.1 * A_H), (E, NU, A_H))])
 def test_equal_moduli_give_hertz(coatings):
     s = solve(coatings)
@@ -61,27 +56,6 @@ def test_without_edge_correction_hertz_is_of_first_order():
     assert s.contact_radius == pytest.approx(A_H, rel=1 / 58)
 
 
-@pytest.mark.parametrize("ratio", [0.1, 10.0])
-def test_thick_coating_gives_hertz_of_the_coating(ratio):
-    errors = []
-    for h in (30.0, 60.0):
-        s = solve(((ratio * E, NU, h * A_H),))
-        a = A_H * ratio ** (-1 / 3)
-        errors.append(abs(s.contact_radius / a - 1))
-    # the substrate is felt as (a/h)^3 by the curvature, so by 8 less at twice the thickness; 5e-6 is missed
-    assert errors[1] < max(errors[0] / 4, 5e-6)
-    assert errors[0] < 4e-4
-
-
-@pytest.mark.parametrize("ratio", [0.25, 4.0])
-def test_thin_coating_gives_hertz_of_the_substrate(ratio):
-    approaches = [solve(((ratio * E, NU, h * A_H),), patches=65).approach for h in (0.02, 0.01)]
-    errors = [abs(approach / (A_H**2 / R) - 1) for approach in approaches]
-    # linear in the thickness
-    assert errors[1] == pytest.approx(errors[0] / 2, rel=0.1)
-    assert errors[1] < 0.03
-
-
 def test_scaling_with_load_and_radius(coated):
     # lengths times s, load times s^2: the same pressure, similar figures
     s = 3.7
@@ -94,15 +68,6 @@ def test_scaling_with_load_and_radius(coated):
     c = 1e-3
     soft = solve(tuple((c * E1, nu1, h) for E1, nu1, h in STIFF), load=c * W, substrate=(c * E, NU))
     assert soft.approach == pytest.approx(coated.approach, rel=1e-9, abs=0)
-
-
-def test_pressure_is_symmetric(coated):
-    x = np.linspace(0, 1, 9)[:, None] * A_H
-    y = np.linspace(0, 1, 7)[None, :] * A_H
-    p = coated.pressure(x, y)
-    for other in (coated.pressure(-x, y), coated.pressure(x, -y), coated.pressure(y.T, x.T).T):
-        # the iteration keeps the symmetry to rounding; edge values carry its square root
-        np.testing.assert_allclose(other, p, atol=1e-6 * P_H)
 
 
 def test_stress_of_a_plane_is_the_stress_at_its_points(sliding):
@@ -132,31 +97,6 @@ def test_sliding_stress_is_odd_about_the_frictionless(coated, sliding):
     # the part due to q is odd in x for the normal stresses
     np.testing.assert_allclose((ahead + behind)[0, 0] / 2, still[0, 0], rtol=0, atol=1e-7 * P_H)
     assert np.all(behind[0, 0] > ahead[0, 0])  # tension trails
-
-
-def test_reciprocity_of_two_loads():
-    coatings = ((4 * E, 0.25, 0.5 * A_H), (0.5 * E, 0.4, 0.2 * A_H))
-
-    def prescribed(radius):
-        return semianalytic.solve_prescribed(
-            pressure=1e9,
-            load_radius=radius,
-            coatings=coatings,
-            substrate=STEEL,
-            patches=129,
-            estimate_uncertainty=False,
-        )
-
-    small, large = prescribed(0.5 * A_H), prescribed(A_H)
-    s, w = np.polynomial.legendre.leggauss(60)
-
-    def work(of, on, radius):
-        r = radius * (1 + s) / 2
-        u = on.displacement(r, 0.0, 0.0)[2]
-        return np.pi * radius * np.sum(w * r * u)
-
-    # Betti; spline tables of u, with the kink of the rim: 1e-5
-    assert work(small, large, 0.5 * A_H) == pytest.approx(work(large, small, A_H), rel=2e-5)
 
 
 def test_a_bare_solid_has_no_error_of_conversion():
@@ -235,13 +175,12 @@ def test_uncertainty_not_estimated_is_refused():
         s.stress_uncertainty(0.0, 0.0, 0.0)
 
 
-@pytest.mark.parametrize(("conversion", "worse_than"), [("split-fft", 1e-6), ("plain", 1e-4)])
-def test_other_conversions_are_worse_and_say_so(uncorrected, conversion, worse_than):
-    best = uncorrected
-    other = solve(STIFF, edge_correction=False, conversion=conversion, estimate_uncertainty=True)
+def test_the_plain_conversion_is_worse_and_says_so():
+    best = solve(STIFF, edge_correction=False)
+    other = solve(STIFF, edge_correction=False, conversion="plain", estimate_uncertainty=True)
     assert other.uncertainty is not None
     error = abs(other.approach - best.approach)
-    assert error > worse_than * best.approach
+    assert error > 1e-4 * best.approach
     rows = {row[1]: row[2] for row in other.uncertainty.budget if row[0] == "approach"}
     # estimated on half the patches, from the better conversion
     assert rows["conversion"] == pytest.approx(error, rel=0.5, abs=0)
@@ -377,20 +316,6 @@ def test_a_pickled_solution_gives_the_same_bits(solved):
     assert_same_bits(pickle.loads(pickle.dumps(solution)), solution)
 
 
-def test_a_solution_holds_plain_data_only():
-    def walk(value):
-        if is_dataclass(value):
-            for field in fields(value):
-                walk(getattr(value, field.name))
-        elif isinstance(value, tuple):
-            for item in value:
-                walk(item)
-        else:
-            assert value is None or isinstance(value, int | float | str | np.ndarray), type(value)
-
-    walk(small())
-
-
 @pytest.mark.parametrize("friction", [0.0, -0.3])
 def test_another_friction_needs_no_other_solve(friction):
     sliding, direct = small(), small(friction)
@@ -421,11 +346,6 @@ def test_a_sphere_given_as_a_profile_is_the_sphere():
     s = indent(lambda x, y: (x**2 + y**2) / (2 * R), 1.2 * A_H)
     assert s.approach == pytest.approx(A_H**2 / R, rel=2e-5)
     assert s.peak_pressure == pytest.approx(P_H, rel=5e-5)
-    x = (np.arange(129) - 64) * (2.4 * A_H / 129)
-    heights = (x[:, None] ** 2 + x[None, :] ** 2) / (2 * R)
-    array = indent(heights, 1.2 * A_H)
-    # the same gap on the finest grid; the coarser ones start the shape, whose rounds leave 1e-4 of a change
-    assert array.approach == pytest.approx(s.approach, rel=5e-7, abs=0)
 
 
 @pytest.fixture(scope="module")
@@ -461,15 +381,6 @@ def test_stress_uncertainty_of_patches_covers_the_last_refinement(wide):
     assert np.all(np.abs(sigma - wide.coarser.stress(x, 0.0, 0.0)) <= U)
 
 
-def test_ellipsoid_turned_by_a_right_angle_is_the_same_contact():
-    s = indent(lambda x, y: x**2 / (2 * R) + y**2 / (6 * R), 2 * A_H)
-    turned = indent(lambda x, y: y**2 / (2 * R) + x**2 / (6 * R), 2 * A_H)
-    assert turned.approach == pytest.approx(s.approach, rel=1e-8, abs=0)
-    r = np.linspace(0, A_H, 5)
-    np.testing.assert_allclose(turned.pressure(r, 0.0), s.pressure(0.0 * r, r), atol=1e-5 * P_H)
-    assert s.pressure(0.0, 1.2 * A_H) > 0 == s.pressure(1.2 * A_H, 0.0)
-
-
 def test_flat_punch_has_the_stiffness_of_its_radius():
     a = 1e-4
     edge = 1e-2 * a
@@ -502,7 +413,6 @@ def test_stopping_short_raises():
         ({"tolerance": "1e-8"}, "tolerance = '1e-8'"),
         ({"tolerance": 0.0}, "tolerance = 0"),
         ({"conversion": "magic"}, "conversion = 'magic'"),
-        ({"fill": 1.0}, "fill = 1"),
     ],
 )
 def test_meaningless_input_is_refused_with_a_message(changes, message):

@@ -46,7 +46,6 @@ def study(*failures: str) -> AccuracyStudy:
             conversion("split", 0, 0, 2e-12),
             *(conversion("plain", wide, 0, 0.16) for wide in (2, 4, 8, 16)),
             *(conversion("plain", wide, 2, 0.004) for wide in (2, 4, 8, 16)),
-            *(conversion("split-fft", wide, 2, 0.02 / wide**2) for wide in (2, 4, 8, 16)),
         ),
         failures,
         9.5,

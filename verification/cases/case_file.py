@@ -305,7 +305,7 @@ def _odd(number: int) -> int:
 
 class _SemianalyticNumerics(Strict):
     patches: Annotated[int, Field(ge=33, le=4097), AfterValidator(_odd)] | None = None
-    conversion: Literal["split", "split-fft", "plain"] | None = None
+    conversion: Literal["split", "plain"] | None = None
     max_iterations: Annotated[int, Field(ge=1, le=100_000)] | None = None
 
 

@@ -18,7 +18,7 @@ POOR = {
     "coefficients 1 % off": Edit(
         "semianalytic.influence:surface_coefficients", "K *= 1 / (np.pi", "K *= 1.01 / (np.pi"
     ),
-    "an image twice as deep": Edit("semianalytic.influence:surface_coefficients", "d, d, b)", "d, d, 2 * b)"),
+    "an image twice as deep": Edit("semianalytic.influence:surface_coefficients", "d, b)", "d, 2 * b)"),
     "a domain too small": Edit(
         "semianalytic.response:Response._transformed",
         "low, high = 1e-7 / max(b, self.total)",

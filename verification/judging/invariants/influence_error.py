@@ -42,7 +42,7 @@ def conversion_errors(
 ) -> tuple[ConversionError, ...]:
     """The influence coefficients of each conversion against direct quadrature.
 
-    plain, with no alias and with two on either side, and split-fft on each domain; split, which has none.
+    plain, with no alias and with two on either side, on each domain; split, which has none.
     The grid fits the contact; the patches judged are the loaded one, some along a row, some along the
     diagonal, out to the corner.
     """
@@ -60,22 +60,13 @@ def conversion_errors(
     def excess(k: FloatArray) -> FloatArray:
         return frf.compliance_excess(k, problem.coatings, problem.substrate)
 
-    def in_use(conversion: str, wide: int) -> FloatArray:
-        return influence.surface_coefficients(
-            n, d, body, Numerics(conversion=conversion, enlarge=max(wide, 1))
-        )
-
-    def without_aliases(wide: int) -> FloatArray:
-        return scale * influence.plain_coefficients(n, d, excess, enlarge=wide, aliases=0)
+    def plain(wide: int, aliases: int) -> FloatArray:
+        return scale * influence.plain_coefficients(n, d, excess, enlarge=wide, aliases=aliases)
 
     wanted: list[tuple[str, int, int, Callable[[], FloatArray]]] = [
-        ("split", 0, 0, partial(in_use, "split", 0))
+        ("split", 0, 0, partial(influence.surface_coefficients, n, d, body, Numerics()))
     ]
-    for wide in enlarge:
-        wanted.append(("plain", wide, 0, partial(without_aliases, wide)))
-        wanted.append(("plain", wide, 2, partial(in_use, "plain", wide)))
-        if problem.coatings:
-            wanted.append(("split-fft", wide, 2, partial(in_use, "split-fft", wide)))
+    wanted += [("plain", wide, some, partial(plain, wide, some)) for wide in enlarge for some in (0, 2)]
     found = []
     for conversion, wide, aliases, convert in wanted:
         begin = time.perf_counter()
