@@ -34,7 +34,7 @@ from scipy.interpolate import PPoly
 from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation
-from .coupling import Coupling
+from .coupling import Body, solve_pair
 from .loading import solve_fields
 from .mesh import EDGE_SIZE, MeridianMesh
 from .recovery import edge_distances
@@ -158,12 +158,12 @@ def undeformed_gap(r: np.ndarray, curvature: float = 0.0) -> np.ndarray:
 def solve_at_radius(
     solid: LayeredSolid,
     discretisation: Discretisation,
-    ball: tuple[LayeredSolid, Coupling] | None = None,
+    ball: Body | None = None,
     curvature: float = 0.0,
 ) -> FixedRadiusContact:
     """Solve the contact whose edge is the mesh's contact radius.
 
-    ball : layers of an elastic ball, and its discretisation coupled to that of the flat
+    ball : layers and elements of an elastic ball, with the nodes of the flat on the surface
     curvature : of the gap, as in `undeformed_gap`
     """
     d, contact = discretisation, discretisation.contact
@@ -176,7 +176,7 @@ def solve_at_radius(
         u, solved = solve_fields(d, solid, 0, far, u_z=shape)
         reaction = solved.force[d.N + contact]
     else:
-        u, of_ball, reaction, solved = ball[1].solve((solid, ball[0]), shape, far)
+        u, of_ball, reaction, solved = solve_pair(((solid, d), ball), shape, far)
 
     mass = d.contact_mass()[contact][:, contact]
     even = _even_at_the_axis(nodes, d.order)
@@ -202,7 +202,7 @@ def solve_at_radius(
         stiffness=float(stiffness),
         growth=float(a / W * stiffness * K / (2 * k)),
         residual=float(2 * np.pi * np.abs(solved.residual @ combine).max() / abs(W)),
-        ball=None if ball is None else Ball(ball[1].ball, of_ball @ combine),
+        ball=None if ball is None else Ball(ball[1], of_ball @ combine),
         curvature=curvature,
     )
 

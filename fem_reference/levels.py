@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact, solve_at_radius
-from .coupling import Coupling
 from .mesh import EDGE_SIZE, Grading, MeridianMesh, meridian_mesh
 from .scaling import LayeredSolid, first_radius
 
@@ -93,9 +92,9 @@ def find_contact_radius(
     solves: History = []
     while True:
         factor = a / meshes[0].contact_radius
-        flat, *others = (Discretisation(mesh.stretched(factor), order) for mesh in meshes)
-        ball = (solids[1], Coupling(flat, others[0])) if others else None
-        contact = solve_at_radius(solids[0], flat, ball, curvature)
+        elements = [Discretisation(mesh.stretched(factor), order) for mesh in meshes]
+        flat, *others = zip(solids, elements, strict=True)
+        contact = solve_at_radius(*flat, others[0] if others else None, curvature)
         solves.append((level.name, a, contact.load))
         positive = 0 < contact.load < math.inf  # NaN is not
         if positive and abs(math.log(load / contact.load)) <= level.tolerance:
