@@ -123,8 +123,9 @@ class StressEstimate(Uncached):
     everywhere: float
     far: float
 
-    def displacement(self, u: np.ndarray, at: LocatedPoints) -> np.ndarray:
-        """Estimate (3, n) of the displacement ``u`` (3, n) at points."""
+    def displacement(self, at: LocatedPoints) -> np.ndarray:
+        """Estimate (3, n) of the displacement at points."""
+        u, _ = self.field.amplitudes(at)
         return self._between(self._corners[6:], at) + self.far + self.relative * np.abs(u)
 
     def _error(self, points: Pair, layer: int | None = None) -> np.ndarray:

@@ -135,7 +135,7 @@ class Solution:
         body : "flat" or "ball"
         Raises ValueError for a point outside the solid or outside its ``layer``, and for a rigid ball.
         """
-        return self._stress(self._of(body).state, self._points(x, y, z, layer, body))
+        return self._stress(self._points(x, y, z, layer, body), body)
 
     def stress_with_uncertainty(
         self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat"
@@ -151,7 +151,7 @@ class Solution:
             error = error + estimates.tangential(points.located) * np.stack([cos] * 4 + [sin] * 2)
         # absolute values of all products in the rotation add up
         U = tensor(error * self.units.pressure, cos, sin, sign=1.0).reshape(3, 3, *points.shape)
-        return self._stress(self._of(body).state, points), U
+        return self._stress(points, body), U
 
     def stress_uncertainty(
         self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat"
@@ -162,42 +162,21 @@ class Solution:
     def displacement(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
         """Displacement (u_x, u_y, u_z) [m], u_z into the body; shape (3,) + that of the points."""
         points = self._points(x, y, z, None, body)
-        return self._displacement(self._of(body).state, points, None)[0]
+        u, _ = self._of(body).state(points)
+        return cartesian(u, points.cos, points.sin).reshape(3, *points.shape) * self.units.displacement
 
-    def displacement_with_uncertainty(
-        self, x: Any, y: Any, z: Any, body: str = "flat"
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """``displacement`` and the absolute numerical uncertainty of each component [m], same shape.
+    def displacement_uncertainty(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
+        """Absolute numerical uncertainty of each component of ``displacement`` [m], same shape.
 
         Raises ValueError when the solution was solved without an estimate.
         """
-        points = self._points(x, y, z, None, body)
-        return self._displacement(self._of(body).state, points, self._estimated(body))
-
-    def displacement_uncertainty(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
-        """The second part of ``displacement_with_uncertainty`` alone."""
-        return self.displacement_with_uncertainty(x, y, z, body)[1]
-
-    def _displacement(
-        self, state: ElasticState, points: SolidPoints, estimates: Estimates | None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement, and its uncertainty by ``estimates``, zero without."""
-        cos, sin = points.cos, points.sin
-        u, error = np.zeros((2, 3, cos.size))
-        harmonics = (np.ones((3, cos.size)), np.stack([cos, sin, cos]))
-        fields = (state.normal, state.tangential)
-        found = (None, None) if estimates is None else (estimates.normal, estimates.tangential)
-        for angle, field_, estimate in zip(harmonics, fields, found, strict=True):
-            if field_ is not None:
-                amplitude, _ = field_(points.located)
-                u += angle * amplitude
-                if estimate is not None:
-                    error += np.abs(angle) * estimate.displacement(amplitude, points.located)
-        x = cartesian(u, cos, sin)
-        cos, sin = np.abs(cos), np.abs(sin)
+        estimates, points = self._estimated(body), self._points(x, y, z, None, body)
+        cos, sin = np.abs(points.cos), np.abs(points.sin)
+        error = estimates.normal.displacement(points.located)
+        if estimates.tangential is not None:
+            error = error + estimates.tangential.displacement(points.located) * np.stack([cos, sin, cos])
         U = np.stack([error[0] * cos + error[1] * sin, error[0] * sin + error[1] * cos, error[2]])
-        unit = self.units.displacement
-        return x.reshape(3, *points.shape) * unit, U.reshape(3, *points.shape) * unit
+        return U.reshape(3, *points.shape) * self.units.displacement
 
     def _of(self, body: str) -> BodyFields:
         known = dict(zip(("flat", "ball"), self.bodies, strict=False))
@@ -218,13 +197,9 @@ class Solution:
         locator = self._of(body).state.discretisation.locator
         return solid_points(locator, self.units.length, x, y, z, layer)
 
-    def _stress(self, state: ElasticState, points: SolidPoints) -> np.ndarray:
-        cos, sin = points.cos, points.sin
-        _, sigma = state.normal(points.located)
-        if state.tangential is not None:
-            _, sliding = state.tangential(points.located)
-            sigma = sigma + sliding * np.stack([cos] * 4 + [sin] * 2)
-        return tensor(sigma * self.units.pressure, cos, sin).reshape(3, 3, *points.shape)
+    def _stress(self, points: SolidPoints, body: str) -> np.ndarray:
+        _, sigma = self._of(body).state(points)
+        return tensor(sigma * self.units.pressure, points.cos, points.sin).reshape(3, 3, *points.shape)
 
 
 def cartesian(u: np.ndarray, cos: np.ndarray, sin: np.ndarray) -> np.ndarray:

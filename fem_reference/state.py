@@ -8,6 +8,7 @@ import numpy as np
 from .axisymmetric import Discretisation
 from .contact import Ball, FixedRadiusContact
 from .loading import resultant, solve_traction
+from .location import SolidPoints
 from .mesh import MeridianMesh
 from .recovery import HarmonicField
 from .scaling import LayeredSolid
@@ -39,6 +40,16 @@ class ElasticState:
         root_at_edge = self.normal.root_at_edge
         sliding = HarmonicField(d, fields, self.solid.materials, 1, pressure, -friction, root_at_edge)
         return replace(self, tangential=sliding)
+
+    def __call__(self, points: SolidPoints) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (3, n) and stress (6, n), cylindrical as in ``HarmonicField``."""
+        u, sigma = self.normal(points.located)
+        if self.tangential is not None:
+            cos, sin = points.cos, points.sin
+            u_sliding, sliding = self.tangential(points.located)
+            u = u + u_sliding * np.stack([cos, sin, cos])
+            sigma = sigma + sliding * np.stack([cos] * 4 + [sin] * 2)
+        return u, sigma
 
     @property
     def discretisation(self) -> Discretisation:
