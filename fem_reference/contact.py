@@ -23,7 +23,6 @@ pressure of the contact of radius a + da is K (d + da)^(1/2), K/2 d^(-1/2) da mo
     d delta / da = K / 2k,     d log W / d log a = (a / W) S K / 2k.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -31,7 +30,6 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 from scipy.interpolate import PPoly
-from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation
 from .coupling import Body, solve_pair
@@ -232,21 +230,6 @@ def complementarity(contact: FixedRadiusContact) -> tuple[float, float]:
     penetration = max(-float(gap[r > contact.contact_radius].min()), 0.0)
     p = contact.pressure.values
     return penetration / contact.approach, max(-float(p.min()), 0.0) / float(p.max())
-
-
-def peak(pressure: Callable[[np.ndarray], np.ndarray], vertices: np.ndarray) -> tuple[float, float]:
-    """Radius and value of the largest pressure: the axis, or a ring where a stiff film bends like a plate."""
-    r = np.unique(np.linspace(vertices[:-1], vertices[1:], 9))
-    best = int(np.argmax(pressure(r)))
-    if best == 0:
-        return 0.0, float(pressure(r[:1])[0])
-    found = minimize_scalar(
-        lambda radius: -float(pressure(np.array([radius]))[0]),
-        bounds=(r[best - 1], r[min(best + 1, r.size - 1)]),
-        method="bounded",
-        options={"xatol": 1e-6 * r[-1]},
-    )
-    return float(found.x), -float(found.fun)
 
 
 def _even_at_the_axis(nodes: np.ndarray, order: int) -> sp.csr_matrix:

@@ -33,10 +33,10 @@ from functools import cached_property
 import numpy as np
 
 from .companion_points import REACH, ComparisonPoints, Pair, largest_around, samples
-from .contact import FixedRadiusContact, peak
+from .contact import FixedRadiusContact
 from .levels import COMPANION
 from .location import LocatedPoints, Uncached
-from .recovery import HarmonicField
+from .recovery import TRACTIONS, HarmonicField
 from .scaling import Units
 from .state import ElasticState
 
@@ -55,8 +55,6 @@ _RECOVERED = 1e-7
 _ASYMPTOTIC_SIZE = 0.18
 # The displacement of the field is part of the estimate within this distance of the edge over the radius.
 _STRIP = 0.3
-# zz, rz, tz: one value on both sides of an interface, in error by that of either side
-_TRACTIONS = [2, 3, 5]
 
 
 @dataclass(frozen=True)
@@ -175,7 +173,8 @@ class StressEstimate(Uncached):
         }
         for upper, depth in enumerate(self.field.discretisation.mesh.depths):
             above, below = (found[float(depth), layer][1] for layer in (upper, upper + 1))
-            above[_TRACTIONS] = below[_TRACTIONS] = np.maximum(above[_TRACTIONS], below[_TRACTIONS])
+            # one value on both sides, in error by that of either side
+            above[TRACTIONS] = below[TRACTIONS] = np.maximum(above[TRACTIONS], below[TRACTIONS])
         return found
 
     def __call__(self, at: LocatedPoints) -> np.ndarray:
@@ -265,7 +264,7 @@ def contact_estimates(
     truncation = sum(state.truncation(0)[0] for state in states) / final.approach
     # both are compliances; the difference of one of them may be zero by chance
     change = max(abs(1 - companion.stiffness / final.stiffness), changes[1] / final.approach)
-    functional = _factors(final.discretisation.order, size)[1]
+    _, functional, _ = _factors(final.discretisation.order, size)
     stiffness = (functional * change + load_residual + truncation) * final.stiffness
     return tuple(found), float(stiffness * units.load / units.displacement)
 
@@ -289,15 +288,15 @@ def estimates(
     """
     d = state.discretisation
     vertices, a = d.contact_vertices, d.mesh.contact_radius
-    at, largest = peak(state.pressure, vertices)
+    at, largest = state.peak
     size_radius, size_approach = changes
     far_approach, far_stress, curvature = np.sum([body.truncation(0) for body in bodies], axis=0)
     # The sphere has curvature 1; at given load a ~ R^(1/3) and p0 ~ R^(-2/3), on the bare substrate. A given
     # pressure with its radius is exact.
     far_radius, far_pressure = np.array([a, largest]) * (curvature if state.normal.root_at_edge else 0.0)
     central = sum(body.central_displacement for body in bodies)
-    factor, functional = _factors(d.order, size)
-    pointwise = _OF_PRESSURE * factor * _coarseness(size)
+    factor, functional, coarseness = _factors(d.order, size)
+    pointwise = _OF_PRESSURE * factor * coarseness
     balance = load_residual / 2 * a  # a ~ W^(1/n), n at least 2 on any layers
     # What the whole mesh misses of a contact's compliance shows in the approach, changes the pressure, and as
     # such a share of the stress everywhere. A given pressure is exact: the error of the displacement under it
@@ -332,8 +331,8 @@ def estimates(
         state.normal,
         companion.normal,
         points,
-        factor=OF_STRESS * _coarseness(size) ** 2,
-        moved=SAFETY / (COMPANION ** (d.order + 1) - 1) * _coarseness(size) ** 2,
+        factor=OF_STRESS * coarseness**2,
+        moved=SAFETY / (COMPANION ** (d.order + 1) - 1) * coarseness**2,
         radius_error=radius_error,
         relative=load_residual + radius_error / a + share,
         everywhere=float(far_stress + pollution + _RECOVERED * largest),
@@ -343,17 +342,14 @@ def estimates(
     return Estimates(scalars, pressure, normal, None, companion, float(pollution))
 
 
-def _factors(order: int, size: float) -> tuple[float, float]:
-    """Uncertainty over the difference from the companion: of a pressure, of approach and stiffness.
+def _factors(order: int, size: float) -> tuple[float, float, float]:
+    """Uncertainty over the change from the companion, of pressure and functionals; factor of large triangles.
 
-    These are functionals of the solution, which converge with up to twice the order (G. Strang and G. J. Fix,
-    An Analysis of the Finite Element Method, 1973, section 3.4); all but two are relied on, which thin
-    films need, of triangles too large for their order nothing beyond it.
+    Functionals, approach and stiffness, converge with up to twice the order (G. Strang and G. J. Fix, An
+    Analysis of the Finite Element Method, 1973, section 3.4); all but two are relied on, which thin films
+    need, of triangles too large for their order nothing beyond it.
     """
+    coarseness = max(1.0, size / _ASYMPTOTIC_SIZE)
     twice = 2 * order - 2 if size <= _ASYMPTOTIC_SIZE else order
-    factor, functional = (SAFETY / (COMPANION**n - 1) * _coarseness(size) for n in (order, twice))
-    return factor, functional
-
-
-def _coarseness(size: float) -> float:
-    return max(1.0, size / _ASYMPTOTIC_SIZE)
+    factor, functional = (SAFETY / (COMPANION**n - 1) * coarseness for n in (order, twice))
+    return factor, functional, coarseness

@@ -28,7 +28,6 @@ _OPTIONS = {
     "Mesh.Algorithm": 6,  # frontal Delaunay
     "Mesh.ElementOrder": 1,
     "Mesh.RandomSeed": 1,
-    "Mesh.SaveAll": 0,
     "Mesh.MeshSizeExtendFromBoundary": 0,
     "Mesh.MeshSizeFromPoints": 0,
     "Mesh.MeshSizeFromCurvature": 0,
@@ -75,7 +74,7 @@ def session(name: str) -> Iterator[Any]:
         if not running:
             _start(gmsh)
         before = {option: gmsh.option.getNumber(option) for option in _OPTIONS}
-        current = gmsh.model.getCurrent() if running else None
+        current = gmsh.model.getCurrent()
         try:
             for option, value in _OPTIONS.items():
                 gmsh.option.setNumber(option, value)
@@ -85,8 +84,7 @@ def session(name: str) -> Iterator[Any]:
             if running:
                 gmsh.model.setCurrent(name)
                 gmsh.model.remove()
-                if current is not None and current in gmsh.model.list():
-                    gmsh.model.setCurrent(current)
+                gmsh.model.setCurrent(current)
                 for option, value in before.items():
                     gmsh.option.setNumber(option, value)
             else:

@@ -15,15 +15,10 @@ from .axisymmetric import Discretisation
 from .linear_system import Constrained, constrained_solve
 from .scaling import LayeredSolid
 
-Traction = Callable[[np.ndarray], np.ndarray]
 
-
-def resultant(discretisation: Discretisation, traction: Traction) -> float:
-    """Total force 2 pi int traction(r) r dr over the surface inside the mesh's contact radius."""
-    return float(2 * np.pi * discretisation.contact_load(traction).sum())
-
-
-def solve_traction(d: Discretisation, solid: LayeredSolid, harmonic: int, traction: Traction) -> np.ndarray:
+def solve_traction(
+    d: Discretisation, solid: LayeredSolid, harmonic: int, traction: Callable[[np.ndarray], np.ndarray]
+) -> np.ndarray:
     """Field vector (see ``axisymmetric``) under ``traction`` within the mesh's contact radius.
 
     traction : r -> pressure (harmonic 0) or traction in +x (harmonic 1)

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from .contact import peak
 from .estimate import Estimates, Uncertainty
 from .location import SolidPoints, solid_points
 from .scaling import Units
@@ -103,13 +102,12 @@ class Solution:
         states = [body.estimates.companion for body in self.bodies if body.estimates is not None]
         if not states:
             return None
-        _, largest = peak(states[0].pressure, states[0].discretisation.contact_vertices)
         approach = sum(state.central_displacement for state in states)
         return replace(
             self,
             contact_radius=states[0].mesh.contact_radius * self.units.length,
             approach=approach * self.units.displacement,
-            peak_pressure=largest * self.units.pressure,
+            peak_pressure=states[0].peak[1] * self.units.pressure,
             uncertainty=None,
             bodies=tuple(BodyFields(state, None) for state in states),
             stiffness=None,
