@@ -241,75 +241,74 @@ def contact_estimates(
     companion: FixedRadiusContact,
     states: tuple[ElasticState, ...],
     units: Units,
-    load: float,
     size: float,
 ) -> tuple[tuple[Estimates, ...], float]:
     """Uncertainty of each of the ``states`` of the ``final`` frictionless contact, and of its stiffness.
 
-    states : of the flat, then of an elastic ball.  load : in scaled ``units``.  size : of the final mesh
+    states : of the flat, then of an elastic ball.  size : of the final mesh
     """
-    # contact radius and approach of each if it had exactly the load
-    (a, approach), (other_a, other_approach) = (
-        (one.radius_at(load), one.approach + (load - one.load) / one.stiffness) for one in (final, companion)
-    )
-    # a force out of balance is a load that the solution does not carry: rounding, across a large contrast
-    load_residual = abs(final.load / load - 1) + final.residual
+    # contact radius and approach of the companion if it had exactly the load
+    a = companion.radius_at(final.load)
+    approach = companion.approach + (final.load - companion.load) / companion.stiffness
     edge, other_edge = final.edge_displacement, companion.edge_displacement
     # what the displaced edges leave of the difference of the radii is due to all other triangles
-    changes = abs((a - other_a) + (edge - other_edge)), abs(approach - other_approach)
-    found = []
-    for state, body in zip(states, (None, companion.ball), strict=False):
-        coarse = ElasticState.of_contact(state.solid, companion, body)
-        found.append(estimates(state, coarse, units, changes, load_residual, abs(edge), size, states))
+    changes = abs((final.contact_radius - a) + (edge - other_edge)), abs(final.approach - approach)
+    # a force out of balance is a load that the solution does not carry: rounding, across a large contrast
+    load_residual = final.residual
+    pairs = zip(states, (None, companion.ball), strict=False)
+    coarse = tuple(ElasticState.of_contact(state.solid, companion, body) for state, body in pairs)
+    found = estimates(states, coarse, units, changes, load_residual, abs(edge), size)
     truncation = sum(state.truncation(0)[0] for state in states) / final.approach
     # both are compliances; the difference of one of them may be zero by chance
     change = max(abs(1 - companion.stiffness / final.stiffness), changes[1] / final.approach)
     _, functional, _ = _factors(final.discretisation.order, size)
     stiffness = (functional * change + load_residual + truncation) * final.stiffness
-    return tuple(found), float(stiffness * units.load / units.displacement)
+    return found, float(stiffness * units.load / units.displacement)
 
 
 def estimates(
-    state: ElasticState,
-    companion: ElasticState,
+    states: tuple[ElasticState, ...],
+    companions: tuple[ElasticState, ...],
     units: Units,
     changes: tuple[float, float],
     load_residual: float,
     edge: float,
     size: float,
-    bodies: tuple[ElasticState, ...],
-) -> Estimates:
-    """Uncertainty of a frictionless ``state``.
+) -> tuple[Estimates, ...]:
+    """Uncertainty of each of the frictionless ``states`` of one contact.
 
     changes : of contact radius and approach from the mesh of the companion, at one load
     load_residual : relative error of the load
     edge : displacement of the contact edge by the size of the last triangle
-    size : of the mesh.  bodies : the states of all bodies in contact
+    size : of the mesh
     """
-    d = state.discretisation
-    vertices, a = d.contact_vertices, d.mesh.contact_radius
-    at, largest = state.peak
+    flat, d = states[0], states[0].discretisation
+    a, (at, largest) = flat.mesh.contact_radius, flat.peak
     size_radius, size_approach = changes
-    far_approach, far_stress, curvature = np.sum([body.truncation(0) for body in bodies], axis=0)
+    far_approach, far_stress, curvature = np.sum([state.truncation(0) for state in states], axis=0)
     # The sphere has curvature 1; at given load a ~ R^(1/3) and p0 ~ R^(-2/3), on the bare substrate. A given
     # pressure with its radius is exact.
-    far_radius, far_pressure = np.array([a, largest]) * (curvature if state.normal.root_at_edge else 0.0)
-    central = sum(body.central_displacement for body in bodies)
+    far_radius, far_pressure = np.array([a, largest]) * (curvature if flat.normal.root_at_edge else 0.0)
+    central = sum(state.central_displacement for state in states)
     factor, functional, coarseness = _factors(d.order, size)
-    pointwise = _OF_PRESSURE * factor * coarseness
     balance = load_residual / 2 * a  # a ~ W^(1/n), n at least 2 on any layers
     # What the whole mesh misses of a contact's compliance shows in the approach, changes the pressure, and as
     # such a share of the stress everywhere. A given pressure is exact: the error of the displacement under it
     # passes to no stress.
-    share = functional * size_approach / central if state.normal.root_at_edge else 0.0
+    share = functional * size_approach / central if flat.normal.root_at_edge else 0.0
     pollution = share * largest
     # the radius takes part in the singularity at the edge and not in the higher order of functionals
     size_radius *= factor
     radius_error = size_radius + SAFETY * edge + far_radius + balance
     everywhere = far_pressure + load_residual / 3 * largest
-    stretch = companion.mesh.contact_radius / a
     pressure = PressureEstimate(
-        state.pressure, companion.pressure, vertices, stretch, pointwise, radius_error, everywhere
+        flat.pressure,
+        companions[0].pressure,
+        d.contact_vertices,
+        stretch=companions[0].mesh.contact_radius / a,
+        factor=_OF_PRESSURE * factor * coarseness,
+        radius_error=radius_error,
+        everywhere=everywhere,
     )
     size_peak = float(pressure(np.array([at]))[0]) - everywhere
     rows: tuple[tuple[str, str, float], ...] = (
@@ -326,20 +325,22 @@ def estimates(
     )
     budget = tuple((quantity, origin, float(value)) for quantity, origin, value in rows)
     total = {name: sum(value for quantity, _, value in budget if quantity == name) for name, _, _ in budget}
-    points = ComparisonPoints(d, companion.discretisation)
-    normal = StressEstimate(
-        state.normal,
-        companion.normal,
-        points,
-        factor=OF_STRESS * coarseness**2,
-        moved=SAFETY / (COMPANION ** (d.order + 1) - 1) * coarseness**2,
-        radius_error=radius_error,
-        relative=load_residual + radius_error / a + share,
-        everywhere=float(far_stress + pollution + _RECOVERED * largest),
-        far=float(far_approach),
-    )
     scalars = Uncertainty(**total, budget=budget)
-    return Estimates(scalars, pressure, normal, None, companion, float(pollution))
+    found = []
+    for state, companion in zip(states, companions, strict=True):
+        normal = StressEstimate(
+            state.normal,
+            companion.normal,
+            ComparisonPoints(state.discretisation, companion.discretisation),
+            factor=OF_STRESS * coarseness**2,
+            moved=SAFETY / (COMPANION ** (d.order + 1) - 1) * coarseness**2,
+            radius_error=radius_error,
+            relative=load_residual + radius_error / a + share,
+            everywhere=float(far_stress + pollution + _RECOVERED * largest),
+            far=float(far_approach),
+        )
+        found.append(Estimates(scalars, pressure, normal, None, companion, float(pollution)))
+    return tuple(found)
 
 
 def _factors(order: int, size: float) -> tuple[float, float, float]:

@@ -19,9 +19,8 @@ class Diagnostics:
 
     iterations : contact solves on all levels
     dofs, triangles, order : size of the final level
-    residual_gap : largest |gap| at the contact's nodes over the approach
-    residual_pressure : most negative gap outside, or pressure inside, over approach or peak; 0 when none
-    residual_load : relative error of the load
+    residual_gap : deepest penetration outside the contact over the approach; 0 when none
+    residual_pressure : largest tension inside over the peak; 0 when none
     residual_equilibrium : largest nodal out-of-balance force over the load; none under a prescribed pressure
     seconds : wall time
     history : (level, contact radius [m], load [N]) of every contact solve
@@ -33,18 +32,9 @@ class Diagnostics:
     order: int
     residual_gap: float = 0.0
     residual_pressure: float = 0.0
-    residual_load: float = 0.0
     residual_equilibrium: float = 0.0
     seconds: float
     history: tuple[tuple[str, float, float], ...]
-
-
-@dataclass(frozen=True, eq=False)
-class BodyFields:
-    """Fields of one body, and their estimated errors or None, in scaled units."""
-
-    state: ElasticState
-    estimates: Estimates | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,8 +46,8 @@ class Solution:
     solution can be pickled; under a prescribed pressure given as a callable, if that can be.
 
     surface_nodes : increasing x on y = 0, z = 0 at which pressure is a nodal value
-    uncertainty   : of the three scalars, None when not estimated
-    bodies, units : fields with their estimated errors of the flat, then of an elastic ball; scaled units
+    states, estimates : fields of the flat, then of an elastic ball, and their estimated errors if any, in
+        scaled ``units``
     stiffness     : d load / d approach [N/m] of the sphere, as of a flat punch of its contact radius
         (Pharr, Oliver and Brotzen, J. Mater. Res. 7 (1992) 613-617); None under a prescribed pressure
     stiffness_uncertainty : absolute, None when not estimated
@@ -67,9 +57,9 @@ class Solution:
     approach: float
     peak_pressure: float
     surface_nodes: np.ndarray
-    uncertainty: Uncertainty | None
     diagnostics: Diagnostics
-    bodies: tuple[BodyFields, ...] = field(repr=False)
+    states: tuple[ElasticState, ...] = field(repr=False)
+    estimates: tuple[Estimates, ...] = field(repr=False)
     units: Units = field(repr=False)
     stiffness: float | None = None
     stiffness_uncertainty: float | None = None
@@ -83,33 +73,37 @@ class Solution:
         """
         started = time.perf_counter()
         check_friction(friction)
-        bodies = []
-        # the traction on the ball is opposite
-        for body, f in zip(self.bodies, (friction, -friction), strict=False):
-            state, estimates = body.state.with_friction(f), body.estimates
-            bodies.append(BodyFields(state, estimates and estimates.with_friction(state, f)))
+        opposed = (friction, -friction)  # on the flat, on the ball
+        states = tuple(map(ElasticState.with_friction, self.states, opposed))
+        estimates = tuple(map(Estimates.with_friction, self.estimates, states, opposed))
         seconds = self.diagnostics.seconds + time.perf_counter() - started
-        return replace(self, bodies=tuple(bodies), diagnostics=replace(self.diagnostics, seconds=seconds))
+        diagnostics = replace(self.diagnostics, seconds=seconds)
+        return replace(self, states=states, estimates=estimates, diagnostics=diagnostics)
+
+    @property
+    def uncertainty(self) -> Uncertainty | None:
+        """Of the three scalars, None when not estimated."""
+        return self.estimates[0].scalars if self.estimates else None
 
     @property
     def state(self) -> ElasticState:
         """Fields of the flat in scaled units."""
-        return self.bodies[0].state
+        return self.states[0]
 
     @property
     def coarser(self) -> "Solution | None":
         """The companion by which the errors were estimated, without estimates; None where there is none."""
-        states = [body.estimates.companion for body in self.bodies if body.estimates is not None]
-        if not states:
+        if not self.estimates:
             return None
+        states = tuple(estimate.companion for estimate in self.estimates)
         approach = sum(state.central_displacement for state in states)
         return replace(
             self,
             contact_radius=states[0].mesh.contact_radius * self.units.length,
             approach=approach * self.units.displacement,
             peak_pressure=states[0].peak[1] * self.units.pressure,
-            uncertainty=None,
-            bodies=tuple(BodyFields(state, None) for state in states),
+            states=states,
+            estimates=(),
             stiffness=None,
             stiffness_uncertainty=None,
         )
@@ -160,7 +154,7 @@ class Solution:
     def displacement(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
         """Displacement (u_x, u_y, u_z) [m], u_z into the body; shape (3,) + that of the points."""
         points = self._points(x, y, z, None, body)
-        u, _ = self._of(body).state(points)
+        u, _ = self.states[self._number(body)](points)
         return cartesian(u, points.cos, points.sin).reshape(3, *points.shape) * self.units.displacement
 
     def displacement_uncertainty(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
@@ -176,27 +170,26 @@ class Solution:
         U = np.stack([error[0] * cos + error[1] * sin, error[0] * sin + error[1] * cos, error[2]])
         return U.reshape(3, *points.shape) * self.units.displacement
 
-    def _of(self, body: str) -> BodyFields:
-        known = dict(zip(("flat", "ball"), self.bodies, strict=False))
+    def _number(self, body: str) -> int:
+        known = ("flat", "ball")[: len(self.states)]
         if body not in known:
             raise ValueError(f"body = {body!r}; this contact has {' and '.join(known)}")
-        return known[body]
+        return known.index(body)
 
     def _estimated(self, body: str) -> Estimates:
-        estimates = self._of(body).estimates
-        if estimates is None:
+        if not self.estimates:
             raise ValueError("this solution has no uncertainty; solve with estimate_uncertainty=True")
-        return estimates
+        return self.estimates[self._number(body)]
 
     def _radius(self, x: Any, y: Any) -> np.ndarray:
         return np.hypot(np.asarray(x, dtype=float), np.asarray(y, dtype=float)) / self.units.length
 
     def _points(self, x: Any, y: Any, z: Any, layer: int | None, body: str) -> SolidPoints:
-        locator = self._of(body).state.discretisation.locator
+        locator = self.states[self._number(body)].discretisation.locator
         return solid_points(locator, self.units.length, x, y, z, layer)
 
     def _stress(self, points: SolidPoints, body: str) -> np.ndarray:
-        _, sigma = self._of(body).state(points)
+        _, sigma = self.states[self._number(body)](points)
         return tensor(sigma * self.units.pressure, points.cos, points.sin).reshape(3, 3, *points.shape)
 
 

@@ -19,7 +19,7 @@ from .loading import solve_traction
 from .mesh import Grading
 from .recovery import HarmonicField
 from .scaling import Coatings, LayeredSolid, Units
-from .solution import BodyFields, Diagnostics, Solution
+from .solution import Diagnostics, Solution
 from .state import ElasticState
 from .validation import (
     check_ball,
@@ -114,16 +114,15 @@ def solve(
         raise NotConverged(f"the contact's stiffness dW/d delta is {final.stiffness}; use quality='fine'")
     pairs = zip(solids, (None, final.ball), strict=False)
     states = tuple(ElasticState.of_contact(solid, final, body) for solid, body in pairs)
-    found: tuple[Estimates | None, ...] = (None,) * len(states)
+    found: tuple[Estimates, ...] = ()
     stiffness_error = None
     if companion:
-        found, stiffness_error = contact_estimates(final, companion, states, unit, target, size)
+        found, stiffness_error = contact_estimates(final, companion, states, unit, size)
     frictionless = Solution(
         contact_radius=final.contact_radius * unit.length,
         approach=final.approach * unit.displacement,
         peak_pressure=states[0].peak[1] * unit.pressure,
         surface_nodes=_surface_nodes(d) * unit.length,
-        uncertainty=None if found[0] is None else found[0].scalars,
         diagnostics=Diagnostics(
             iterations=len(history),
             dofs=sum(2 * state.discretisation.N for state in states),
@@ -131,12 +130,12 @@ def solve(
             order=order,
             residual_gap=penetration,
             residual_pressure=tension,
-            residual_load=abs(final.load / target - 1),
             residual_equilibrium=final.residual,
             seconds=time.perf_counter() - started,
             history=tuple((name, a * a_h, W * unit.load) for name, a, W in history),
         ),
-        bodies=tuple(BodyFields(*each) for each in zip(states, found, strict=True)),
+        states=states,
+        estimates=found,
         units=unit,
         stiffness=final.stiffness * unit.load / unit.displacement,
         stiffness_uncertainty=stiffness_error,
@@ -178,11 +177,12 @@ def solve_prescribed(
         fields = solve_traction(d, solid, 0, p)
         return ElasticState(solid, HarmonicField(d, fields, solid.materials, 0, p, -1.0, False), None)
 
-    state, found = state_on(final_grading(size)), None
+    state = state_on(final_grading(size))
+    found: tuple[Estimates, ...] = ()
     if estimate_uncertainty:
         companion = state_on(companion_grading(size))
         change = abs(state.central_displacement - companion.central_displacement)
-        found = estimates(state, companion, unit, (0.0, change), 0.0, 0.0, size, (state,))
+        found = estimates((state,), (companion,), unit, (0.0, change), 0.0, 0.0, size)
     d = state.discretisation
     nodes = _surface_nodes(d)
     frictionless = Solution(
@@ -190,7 +190,6 @@ def solve_prescribed(
         approach=state.central_displacement * unit.displacement,
         peak_pressure=float(np.max(p(np.abs(nodes)))) * unit.pressure,
         surface_nodes=nodes * unit.length,
-        uncertainty=None if found is None else found.scalars,
         diagnostics=Diagnostics(
             dofs=2 * d.N,
             triangles=int(d.mesh.layer.size),
@@ -198,7 +197,8 @@ def solve_prescribed(
             seconds=time.perf_counter() - started,
             history=(("final", load_radius, float(2 * np.pi * d.contact_load(p).sum()) * unit.load),),
         ),
-        bodies=(BodyFields(state, found),),
+        states=(state,),
+        estimates=found,
         units=unit,
     )
     return frictionless.with_friction(friction)
