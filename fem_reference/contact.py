@@ -13,7 +13,7 @@ paraboloid being a polynomial (of a sphere, its interpolant), and the first give
 through the mass matrix of the contact: the saddle system separates into one positive definite solve and one
 small one. (Dividing reactions by nodal weights instead would fail on the axis, where the weight vanishes.)
 delta and W follow from p(a) = 0 and int p = W, so one factorisation with three right-hand sides, flat punch,
-paraboloid and far field, gives everything. Of an elastic ball u_z is the sum of both bodies' (``coupling``),
+paraboloid and far field, gives everything. Of an elastic ball u_z is the sum of both bodies' (``loading``),
 delta the approach of points far from the contact in both.
 
 The same solution gives the growth of the contact. A load dW indents like a flat punch of radius a, with
@@ -32,8 +32,7 @@ import scipy.sparse.linalg as sla
 from scipy.interpolate import PPoly
 
 from .axisymmetric import Discretisation
-from .coupling import Body, solve_pair
-from .loading import solve_fields
+from .loading import Body, solve_fields, solve_pair
 from .mesh import EDGE_SIZE, MeridianMesh
 from .recovery import edge_distances
 from .scaling import LayeredSolid

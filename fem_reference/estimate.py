@@ -7,7 +7,8 @@ point: the estimate at a vertex is the largest difference in the rings of triang
 counting by the shares of ``REACH``, and between vertices it is linear. Triangles grow with the distance from
 the contact edge and with depth, and so does the neighbourhood. For stresses all of the largest difference
 counts: a thin coating, an interface, the axis keep the mesher from the ratio of sizes that it was asked for.
-For pressure and scalars Roache's estimate (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9)
+For pressure, displacements and scalars Roache's estimate (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413,
+eq. 9)
 
     U = SAFETY |difference| / (ratio^order - 1)
 
@@ -20,10 +21,8 @@ A contact radius in error by da displaces the whole field, which changes the val
 the edge by up to the square root of da. The change of the field under that displacement is part of the
 estimate of pressures and stresses.
 
-The error of a displacement is smooth and mostly that of the whole mesh: its estimate is one number for each
-component, the largest difference at the samples of all triangles times the same factor. In a thin coating,
-whose triangles are small for its sake alone, that is also true of the stress: the relative error of the
-approach, due to the whole mesh, counts everywhere.
+The relative error of the approach, due to the whole mesh, counts everywhere: in a thin coating, whose
+triangles are small for its sake alone, the stress has it too.
 """
 
 from collections.abc import Callable
@@ -144,8 +143,8 @@ class StressEstimate(Uncached):
         return np.concatenate([error, self.moved * np.abs(u - other)])
 
     @cached_property
-    def _vertices(self) -> np.ndarray:
-        """Estimate at the vertices of the triangles of each layer, (9, layers, points)."""
+    def _corners(self) -> np.ndarray:
+        """Estimate at the corners of each triangle, (9, 3, triangles), one for each layer at an interface."""
         d = self.field.discretisation
         points = d.mesh.points.shape[1]
         vertices = d.triangulation.t + d.mesh.layer * points
@@ -156,13 +155,7 @@ class StressEstimate(Uncached):
                 for component, row in zip(worst, estimate, strict=True):
                     np.maximum.at(row, corner, share * component)
             worst = estimate[:, vertices].max(axis=1)
-        return estimate.reshape(9, -1, points)
-
-    @cached_property
-    def _corners(self) -> np.ndarray:
-        """Estimate at the corners of each triangle, (9, 3, triangles)."""
-        d = self.field.discretisation
-        return self._vertices[:, d.mesh.layer, d.triangulation.t]
+        return estimate[:, vertices]
 
     @cached_property
     def _planes(self) -> dict[tuple[float, int], tuple[np.ndarray, np.ndarray]]:

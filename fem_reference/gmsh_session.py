@@ -15,11 +15,6 @@ from typing import Any
 
 _LOCK = threading.Lock()
 
-_MISSING = (
-    "gmsh cannot be loaded ({reason}); on a bare Debian or Ubuntu run: "
-    "apt-get install libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgl1"
-)
-
 _OPTIONS = {
     "General.Terminal": 0,
     "General.Verbosity": 0,
@@ -69,7 +64,10 @@ def session(name: str) -> Iterator[Any]:
         try:
             import gmsh
         except (ImportError, OSError) as error:
-            raise ImportError(_MISSING.format(reason=error)) from error
+            raise ImportError(
+                f"gmsh cannot be loaded ({error}); on a bare Debian or Ubuntu run: "
+                "apt-get install libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgl1"
+            ) from error
         running = bool(gmsh.isInitialized())
         if not running:
             _start(gmsh)
