@@ -7,22 +7,18 @@
 True
 """
 
-from .estimate import Uncertainty
 from .levels import NotConverged
 from .off_axis import PressedSolid, check_pressure
 from .shaped_contact import ShapedContact, solve_shape
-from .solution import Diagnostics, Solution
+from .solution import Solution
 from .solver import solve, solve_prescribed
-from .vtu import PlaneMesh, plane_mesh, write_vtu
+from .vtu import plane_mesh, write_vtu
 
 __all__ = [
-    "Diagnostics",
     "NotConverged",
-    "PlaneMesh",
     "PressedSolid",
     "ShapedContact",
     "Solution",
-    "Uncertainty",
     "check_pressure",
     "plane_mesh",
     "solve",

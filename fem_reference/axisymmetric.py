@@ -106,10 +106,6 @@ class Discretisation(Uncached):
         """Positions (r, z) of the unknowns, shape (2, N)."""
         return np.asarray(self.basis.doflocs)
 
-    def unknowns_on(self, where: Callable[[np.ndarray], np.ndarray]) -> np.ndarray:
-        """Numbers of the unknowns (of one field) on the boundary edges whose midpoint satisfies ``where``."""
-        return np.asarray(self.basis.get_dofs(where).all())
-
     @cached_property
     def contact_vertices(self) -> np.ndarray:
         """Increasing radii of the surface vertices from the axis to the contact edge."""
@@ -118,7 +114,7 @@ class Discretisation(Uncached):
     @cached_property
     def surface(self) -> np.ndarray:
         """Unknowns of one field on z = 0, by increasing radius."""
-        numbers = self.unknowns_on(lambda x: x[1] == 0)
+        numbers = self.basis.get_dofs(lambda x: x[1] == 0).all()
         return numbers[np.argsort(self.locations[0, numbers])]
 
     @cached_property
@@ -128,12 +124,12 @@ class Discretisation(Uncached):
 
     @cached_property
     def axis(self) -> np.ndarray:
-        return self.unknowns_on(lambda x: x[0] == 0)
+        return np.asarray(self.basis.get_dofs(lambda x: x[0] == 0).all())
 
     @cached_property
     def outer(self) -> np.ndarray:
         far = self.locations.max(axis=1)[:, None] * (1 - 1e-9)
-        return self.unknowns_on(lambda x: np.any(x >= far, axis=0))
+        return np.asarray(self.basis.get_dofs(lambda x: np.any(x >= far, axis=0)).all())
 
     def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: float) -> sp.csc_matrix:
         """Stiffness matrix, (n, n) for field vectors (n,): virtual work over the angular factor of all terms.

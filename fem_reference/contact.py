@@ -13,7 +13,7 @@ paraboloid being a polynomial (of a sphere, its interpolant), and the first give
 through the mass matrix of the contact: the saddle system separates into one positive definite solve and one
 small one. (Dividing reactions by nodal weights instead would fail on the axis, where the weight vanishes.)
 delta and W follow from p(a) = 0 and int p = W, so one factorisation with three right-hand sides, flat punch,
-paraboloid and far field, gives everything. Of an elastic ball u_z is the sum of both bodies' (``coupling``),
+paraboloid and far field, gives everything. Of an elastic ball u_z is the sum of both bodies' (``loading``),
 delta the approach of points far from the contact in both.
 
 The same solution gives the growth of the contact. A load dW indents like a flat punch of radius a, with
@@ -23,7 +23,6 @@ pressure of the contact of radius a + da is K (d + da)^(1/2), K/2 d^(-1/2) da mo
     d delta / da = K / 2k,     d log W / d log a = (a / W) S K / 2k.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -31,11 +30,9 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 from scipy.interpolate import PPoly
-from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation
-from .coupling import Coupling
-from .loading import solve_fields
+from .loading import Body, solve_fields, solve_pair
 from .mesh import EDGE_SIZE, MeridianMesh
 from .recovery import edge_distances
 from .scaling import LayeredSolid
@@ -158,12 +155,12 @@ def undeformed_gap(r: np.ndarray, curvature: float = 0.0) -> np.ndarray:
 def solve_at_radius(
     solid: LayeredSolid,
     discretisation: Discretisation,
-    ball: tuple[LayeredSolid, Coupling] | None = None,
+    ball: Body | None = None,
     curvature: float = 0.0,
 ) -> FixedRadiusContact:
     """Solve the contact whose edge is the mesh's contact radius.
 
-    ball : layers of an elastic ball, and its discretisation coupled to that of the flat
+    ball : layers and elements of an elastic ball, with the nodes of the flat on the surface
     curvature : of the gap, as in `undeformed_gap`
     """
     d, contact = discretisation, discretisation.contact
@@ -176,7 +173,7 @@ def solve_at_radius(
         u, solved = solve_fields(d, solid, 0, far, u_z=shape)
         reaction = solved.force[d.N + contact]
     else:
-        u, of_ball, reaction, solved = ball[1].solve((solid, ball[0]), shape, far)
+        u, of_ball, reaction, solved = solve_pair(((solid, d), ball), shape, far)
 
     mass = d.contact_mass()[contact][:, contact]
     even = _even_at_the_axis(nodes, d.order)
@@ -202,7 +199,7 @@ def solve_at_radius(
         stiffness=float(stiffness),
         growth=float(a / W * stiffness * K / (2 * k)),
         residual=float(2 * np.pi * np.abs(solved.residual @ combine).max() / abs(W)),
-        ball=None if ball is None else Ball(ball[1].ball, of_ball @ combine),
+        ball=None if ball is None else Ball(ball[1], of_ball @ combine),
         curvature=curvature,
     )
 
@@ -232,21 +229,6 @@ def complementarity(contact: FixedRadiusContact) -> tuple[float, float]:
     penetration = max(-float(gap[r > contact.contact_radius].min()), 0.0)
     p = contact.pressure.values
     return penetration / contact.approach, max(-float(p.min()), 0.0) / float(p.max())
-
-
-def peak(pressure: Callable[[np.ndarray], np.ndarray], vertices: np.ndarray) -> tuple[float, float]:
-    """Radius and value of the largest pressure: the axis, or a ring where a stiff film bends like a plate."""
-    r = np.unique(np.linspace(vertices[:-1], vertices[1:], 9))
-    best = int(np.argmax(pressure(r)))
-    if best == 0:
-        return 0.0, float(pressure(r[:1])[0])
-    found = minimize_scalar(
-        lambda radius: -float(pressure(np.array([radius]))[0]),
-        bounds=(r[best - 1], r[min(best + 1, r.size - 1)]),
-        method="bounded",
-        options={"xatol": 1e-6 * r[-1]},
-    )
-    return float(found.x), -float(found.fun)
 
 
 def _even_at_the_axis(nodes: np.ndarray, order: int) -> sp.csr_matrix:

@@ -7,7 +7,8 @@ point: the estimate at a vertex is the largest difference in the rings of triang
 counting by the shares of ``REACH``, and between vertices it is linear. Triangles grow with the distance from
 the contact edge and with depth, and so does the neighbourhood. For stresses all of the largest difference
 counts: a thin coating, an interface, the axis keep the mesher from the ratio of sizes that it was asked for.
-For pressure and scalars Roache's estimate (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9)
+For pressure, displacements and scalars Roache's estimate (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413,
+eq. 9)
 
     U = SAFETY |difference| / (ratio^order - 1)
 
@@ -20,10 +21,8 @@ A contact radius in error by da displaces the whole field, which changes the val
 the edge by up to the square root of da. The change of the field under that displacement is part of the
 estimate of pressures and stresses.
 
-The error of a displacement is smooth and mostly that of the whole mesh: its estimate is one number for each
-component, the largest difference at the samples of all triangles times the same factor. In a thin coating,
-whose triangles are small for its sake alone, that is also true of the stress: the relative error of the
-approach, due to the whole mesh, counts everywhere.
+The relative error of the approach, due to the whole mesh, counts everywhere: in a thin coating, whose
+triangles are small for its sake alone, the stress has it too.
 """
 
 from collections.abc import Callable
@@ -33,10 +32,10 @@ from functools import cached_property
 import numpy as np
 
 from .companion_points import REACH, ComparisonPoints, Pair, largest_around, samples
-from .contact import FixedRadiusContact, peak
+from .contact import FixedRadiusContact
 from .levels import COMPANION
 from .location import LocatedPoints, Uncached
-from .recovery import HarmonicField
+from .recovery import TRACTIONS, HarmonicField
 from .scaling import Units
 from .state import ElasticState
 
@@ -55,8 +54,6 @@ _RECOVERED = 1e-7
 _ASYMPTOTIC_SIZE = 0.18
 # The displacement of the field is part of the estimate within this distance of the edge over the radius.
 _STRIP = 0.3
-# zz, rz, tz: one value on both sides of an interface, in error by that of either side
-_TRACTIONS = [2, 3, 5]
 
 
 @dataclass(frozen=True)
@@ -123,8 +120,9 @@ class StressEstimate(Uncached):
     everywhere: float
     far: float
 
-    def displacement(self, u: np.ndarray, at: LocatedPoints) -> np.ndarray:
-        """Estimate (3, n) of the displacement ``u`` (3, n) at points."""
+    def displacement(self, at: LocatedPoints) -> np.ndarray:
+        """Estimate (3, n) of the displacement at points."""
+        u, _ = self.field.amplitudes(at)
         return self._between(self._corners[6:], at) + self.far + self.relative * np.abs(u)
 
     def _error(self, points: Pair, layer: int | None = None) -> np.ndarray:
@@ -145,8 +143,8 @@ class StressEstimate(Uncached):
         return np.concatenate([error, self.moved * np.abs(u - other)])
 
     @cached_property
-    def _vertices(self) -> np.ndarray:
-        """Estimate at the vertices of the triangles of each layer, (9, layers, points)."""
+    def _corners(self) -> np.ndarray:
+        """Estimate at the corners of each triangle, (9, 3, triangles), one for each layer at an interface."""
         d = self.field.discretisation
         points = d.mesh.points.shape[1]
         vertices = d.triangulation.t + d.mesh.layer * points
@@ -157,13 +155,7 @@ class StressEstimate(Uncached):
                 for component, row in zip(worst, estimate, strict=True):
                     np.maximum.at(row, corner, share * component)
             worst = estimate[:, vertices].max(axis=1)
-        return estimate.reshape(9, -1, points)
-
-    @cached_property
-    def _corners(self) -> np.ndarray:
-        """Estimate at the corners of each triangle, (9, 3, triangles)."""
-        d = self.field.discretisation
-        return self._vertices[:, d.mesh.layer, d.triangulation.t]
+        return estimate[:, vertices]
 
     @cached_property
     def _planes(self) -> dict[tuple[float, int], tuple[np.ndarray, np.ndarray]]:
@@ -174,7 +166,8 @@ class StressEstimate(Uncached):
         }
         for upper, depth in enumerate(self.field.discretisation.mesh.depths):
             above, below = (found[float(depth), layer][1] for layer in (upper, upper + 1))
-            above[_TRACTIONS] = below[_TRACTIONS] = np.maximum(above[_TRACTIONS], below[_TRACTIONS])
+            # one value on both sides, in error by that of either side
+            above[TRACTIONS] = below[TRACTIONS] = np.maximum(above[TRACTIONS], below[TRACTIONS])
         return found
 
     def __call__(self, at: LocatedPoints) -> np.ndarray:
@@ -241,75 +234,74 @@ def contact_estimates(
     companion: FixedRadiusContact,
     states: tuple[ElasticState, ...],
     units: Units,
-    load: float,
     size: float,
 ) -> tuple[tuple[Estimates, ...], float]:
     """Uncertainty of each of the ``states`` of the ``final`` frictionless contact, and of its stiffness.
 
-    states : of the flat, then of an elastic ball.  load : in scaled ``units``.  size : of the final mesh
+    states : of the flat, then of an elastic ball.  size : of the final mesh
     """
-    # contact radius and approach of each if it had exactly the load
-    (a, approach), (other_a, other_approach) = (
-        (one.radius_at(load), one.approach + (load - one.load) / one.stiffness) for one in (final, companion)
-    )
-    # a force out of balance is a load that the solution does not carry: rounding, across a large contrast
-    load_residual = abs(final.load / load - 1) + final.residual
+    # contact radius and approach of the companion if it had exactly the load
+    a = companion.radius_at(final.load)
+    approach = companion.approach + (final.load - companion.load) / companion.stiffness
     edge, other_edge = final.edge_displacement, companion.edge_displacement
     # what the displaced edges leave of the difference of the radii is due to all other triangles
-    changes = abs((a - other_a) + (edge - other_edge)), abs(approach - other_approach)
-    found = []
-    for state, body in zip(states, (None, companion.ball), strict=False):
-        coarse = ElasticState.of_contact(state.solid, companion, body)
-        found.append(estimates(state, coarse, units, changes, load_residual, abs(edge), size, states))
+    changes = abs((final.contact_radius - a) + (edge - other_edge)), abs(final.approach - approach)
+    # a force out of balance is a load that the solution does not carry: rounding, across a large contrast
+    load_residual = final.residual
+    pairs = zip(states, (None, companion.ball), strict=False)
+    coarse = tuple(ElasticState.of_contact(state.solid, companion, body) for state, body in pairs)
+    found = estimates(states, coarse, units, changes, load_residual, abs(edge), size)
     truncation = sum(state.truncation(0)[0] for state in states) / final.approach
     # both are compliances; the difference of one of them may be zero by chance
     change = max(abs(1 - companion.stiffness / final.stiffness), changes[1] / final.approach)
-    functional = _factors(final.discretisation.order, size)[1]
+    _, functional, _ = _factors(final.discretisation.order, size)
     stiffness = (functional * change + load_residual + truncation) * final.stiffness
-    return tuple(found), float(stiffness * units.load / units.displacement)
+    return found, float(stiffness * units.load / units.displacement)
 
 
 def estimates(
-    state: ElasticState,
-    companion: ElasticState,
+    states: tuple[ElasticState, ...],
+    companions: tuple[ElasticState, ...],
     units: Units,
     changes: tuple[float, float],
     load_residual: float,
     edge: float,
     size: float,
-    bodies: tuple[ElasticState, ...],
-) -> Estimates:
-    """Uncertainty of a frictionless ``state``.
+) -> tuple[Estimates, ...]:
+    """Uncertainty of each of the frictionless ``states`` of one contact.
 
     changes : of contact radius and approach from the mesh of the companion, at one load
     load_residual : relative error of the load
     edge : displacement of the contact edge by the size of the last triangle
-    size : of the mesh.  bodies : the states of all bodies in contact
+    size : of the mesh
     """
-    d = state.discretisation
-    vertices, a = d.contact_vertices, d.mesh.contact_radius
-    at, largest = peak(state.pressure, vertices)
+    flat, d = states[0], states[0].discretisation
+    a, (at, largest) = flat.mesh.contact_radius, flat.peak
     size_radius, size_approach = changes
-    far_approach, far_stress, curvature = np.sum([body.truncation(0) for body in bodies], axis=0)
+    far_approach, far_stress, curvature = np.sum([state.truncation(0) for state in states], axis=0)
     # The sphere has curvature 1; at given load a ~ R^(1/3) and p0 ~ R^(-2/3), on the bare substrate. A given
     # pressure with its radius is exact.
-    far_radius, far_pressure = np.array([a, largest]) * (curvature if state.normal.root_at_edge else 0.0)
-    central = sum(body.central_displacement for body in bodies)
-    factor, functional = _factors(d.order, size)
-    pointwise = _OF_PRESSURE * factor * _coarseness(size)
+    far_radius, far_pressure = np.array([a, largest]) * (curvature if flat.normal.root_at_edge else 0.0)
+    central = sum(state.central_displacement for state in states)
+    factor, functional, coarseness = _factors(d.order, size)
     balance = load_residual / 2 * a  # a ~ W^(1/n), n at least 2 on any layers
     # What the whole mesh misses of a contact's compliance shows in the approach, changes the pressure, and as
     # such a share of the stress everywhere. A given pressure is exact: the error of the displacement under it
     # passes to no stress.
-    share = functional * size_approach / central if state.normal.root_at_edge else 0.0
+    share = functional * size_approach / central if flat.normal.root_at_edge else 0.0
     pollution = share * largest
     # the radius takes part in the singularity at the edge and not in the higher order of functionals
     size_radius *= factor
     radius_error = size_radius + SAFETY * edge + far_radius + balance
     everywhere = far_pressure + load_residual / 3 * largest
-    stretch = companion.mesh.contact_radius / a
     pressure = PressureEstimate(
-        state.pressure, companion.pressure, vertices, stretch, pointwise, radius_error, everywhere
+        flat.pressure,
+        companions[0].pressure,
+        d.contact_vertices,
+        stretch=companions[0].mesh.contact_radius / a,
+        factor=_OF_PRESSURE * factor * coarseness,
+        radius_error=radius_error,
+        everywhere=everywhere,
     )
     size_peak = float(pressure(np.array([at]))[0]) - everywhere
     rows: tuple[tuple[str, str, float], ...] = (
@@ -326,33 +318,32 @@ def estimates(
     )
     budget = tuple((quantity, origin, float(value)) for quantity, origin, value in rows)
     total = {name: sum(value for quantity, _, value in budget if quantity == name) for name, _, _ in budget}
-    points = ComparisonPoints(d, companion.discretisation)
-    normal = StressEstimate(
-        state.normal,
-        companion.normal,
-        points,
-        factor=OF_STRESS * _coarseness(size) ** 2,
-        moved=SAFETY / (COMPANION ** (d.order + 1) - 1) * _coarseness(size) ** 2,
-        radius_error=radius_error,
-        relative=load_residual + radius_error / a + share,
-        everywhere=float(far_stress + pollution + _RECOVERED * largest),
-        far=float(far_approach),
-    )
     scalars = Uncertainty(**total, budget=budget)
-    return Estimates(scalars, pressure, normal, None, companion, float(pollution))
+    found = []
+    for state, companion in zip(states, companions, strict=True):
+        normal = StressEstimate(
+            state.normal,
+            companion.normal,
+            ComparisonPoints(state.discretisation, companion.discretisation),
+            factor=OF_STRESS * coarseness**2,
+            moved=SAFETY / (COMPANION ** (d.order + 1) - 1) * coarseness**2,
+            radius_error=radius_error,
+            relative=load_residual + radius_error / a + share,
+            everywhere=float(far_stress + pollution + _RECOVERED * largest),
+            far=float(far_approach),
+        )
+        found.append(Estimates(scalars, pressure, normal, None, companion, float(pollution)))
+    return tuple(found)
 
 
-def _factors(order: int, size: float) -> tuple[float, float]:
-    """Uncertainty over the difference from the companion: of a pressure, of approach and stiffness.
+def _factors(order: int, size: float) -> tuple[float, float, float]:
+    """Uncertainty over the change from the companion, of pressure and functionals; factor of large triangles.
 
-    These are functionals of the solution, which converge with up to twice the order (G. Strang and G. J. Fix,
-    An Analysis of the Finite Element Method, 1973, section 3.4); all but two are relied on, which thin
-    films need, of triangles too large for their order nothing beyond it.
+    Functionals, approach and stiffness, converge with up to twice the order (G. Strang and G. J. Fix, An
+    Analysis of the Finite Element Method, 1973, section 3.4); all but two are relied on, which thin films
+    need, of triangles too large for their order nothing beyond it.
     """
+    coarseness = max(1.0, size / _ASYMPTOTIC_SIZE)
     twice = 2 * order - 2 if size <= _ASYMPTOTIC_SIZE else order
-    factor, functional = (SAFETY / (COMPANION**n - 1) * _coarseness(size) for n in (order, twice))
-    return factor, functional
-
-
-def _coarseness(size: float) -> float:
-    return max(1.0, size / _ASYMPTOTIC_SIZE)
+    factor, functional = (SAFETY / (COMPANION**n - 1) * coarseness for n in (order, twice))
+    return factor, functional, coarseness

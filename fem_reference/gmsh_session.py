@@ -15,11 +15,6 @@ from typing import Any
 
 _LOCK = threading.Lock()
 
-_MISSING = (
-    "gmsh cannot be loaded ({reason}); on a bare Debian or Ubuntu run: "
-    "apt-get install libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgl1"
-)
-
 _OPTIONS = {
     "General.Terminal": 0,
     "General.Verbosity": 0,
@@ -28,7 +23,6 @@ _OPTIONS = {
     "Mesh.Algorithm": 6,  # frontal Delaunay
     "Mesh.ElementOrder": 1,
     "Mesh.RandomSeed": 1,
-    "Mesh.SaveAll": 0,
     "Mesh.MeshSizeExtendFromBoundary": 0,
     "Mesh.MeshSizeFromPoints": 0,
     "Mesh.MeshSizeFromCurvature": 0,
@@ -70,12 +64,15 @@ def session(name: str) -> Iterator[Any]:
         try:
             import gmsh
         except (ImportError, OSError) as error:
-            raise ImportError(_MISSING.format(reason=error)) from error
+            raise ImportError(
+                f"gmsh cannot be loaded ({error}); on a bare Debian or Ubuntu run: "
+                "apt-get install libglu1-mesa libxrender1 libxcursor1 libxft2 libxinerama1 libgl1"
+            ) from error
         running = bool(gmsh.isInitialized())
         if not running:
             _start(gmsh)
         before = {option: gmsh.option.getNumber(option) for option in _OPTIONS}
-        current = gmsh.model.getCurrent() if running else None
+        current = gmsh.model.getCurrent()
         try:
             for option, value in _OPTIONS.items():
                 gmsh.option.setNumber(option, value)
@@ -85,8 +82,7 @@ def session(name: str) -> Iterator[Any]:
             if running:
                 gmsh.model.setCurrent(name)
                 gmsh.model.remove()
-                if current is not None and current in gmsh.model.list():
-                    gmsh.model.setCurrent(current)
+                gmsh.model.setCurrent(current)
                 for option, value in before.items():
                     gmsh.option.setNumber(option, value)
             else:

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 from .axisymmetric import Discretisation
 from .contact import FixedRadiusContact, solve_at_radius
-from .coupling import Coupling
 from .mesh import EDGE_SIZE, Grading, MeridianMesh, meridian_mesh
 from .scaling import LayeredSolid, first_radius
 
@@ -20,6 +19,7 @@ _COARSE = Grading.of(0.5, rows=1.0)
 # Tolerances of the load. That of the companion counts in the estimate: one solve instead of two. The final
 # mesh meets its own by one solve, then moves with its edge to the load itself.
 _OF_COMPANION, _OF_FINAL = 1e-5, 3e-8
+_MOST_SOLVES = 30  # of the contact on one level
 _STRETCH = 1.3  # largest factor by which radii are stretched before a new mesh is generated
 # Above this Poisson ratio flat triangles in a film lock far from the contact: at 0.4999 the approach erred by
 # 2.4 times its uncertainty until the largest were this share of those of other films.
@@ -49,7 +49,6 @@ def solve_levels(
     *,
     order: int,
     size: float,
-    max_iterations: int,
     with_companion: bool,
     curvature: float = 0.0,
 ) -> tuple[FixedRadiusContact, FixedRadiusContact | None, History]:
@@ -57,8 +56,7 @@ def solve_levels(
 
     Returns the contact on the final mesh, that on the companion if wanted, and every solve.
 
-    order, size : of the final level.  max_iterations : contact solves allowed on each level
-    curvature : of the gap, as in `contact.undeformed_gap`
+    order, size : of the final level.  curvature : of the gap, as in `contact.undeformed_gap`
     Raises NotConverged when the load is not reached on one of the levels.
     """
     levels = [Level("coarse", _COARSE, 1e-3)]
@@ -69,7 +67,7 @@ def solve_levels(
     history: History = []
     found: dict[str, FixedRadiusContact] = {}
     for level in levels:
-        contact, solves = find_contact_radius(solids, load, level, a, order, curvature, max_iterations)
+        contact, solves = find_contact_radius(solids, load, level, a, order, curvature)
         history += solves
         found[level.name] = contact
         a = contact.radius_at(load) + contact.edge_displacement  # which is smaller on the next
@@ -77,7 +75,7 @@ def solve_levels(
 
 
 def find_contact_radius(
-    solids: Solids, load: float, level: Level, a: float, order: int, curvature: float, max_iterations: int
+    solids: Solids, load: float, level: Level, a: float, order: int, curvature: float
 ) -> tuple[FixedRadiusContact, History]:
     """Find the contact radius of a ``load``, within the tolerance of the ``level``, from ``a``.
 
@@ -86,25 +84,25 @@ def find_contact_radius(
     some thousandths (``contact``), converges in a few steps. Small steps stretch the meshes, large ones make
     new ones.
 
-    Returns the last contact and every solve. Raises NotConverged after
-    ``max_iterations``, or where the load is not a positive number.
+    Returns the last contact and every solve. Raises NotConverged after ``_MOST_SOLVES``, or where the load is
+    not a positive number.
     """
     meshes = meshes_at(solids, level.grading, a)
     solves: History = []
     while True:
         factor = a / meshes[0].contact_radius
-        flat, *others = (Discretisation(mesh.stretched(factor), order) for mesh in meshes)
-        ball = (solids[1], Coupling(flat, others[0])) if others else None
-        contact = solve_at_radius(solids[0], flat, ball, curvature)
+        elements = [Discretisation(mesh.stretched(factor), order) for mesh in meshes]
+        flat, *others = zip(solids, elements, strict=True)
+        contact = solve_at_radius(*flat, others[0] if others else None, curvature)
         solves.append((level.name, a, contact.load))
         positive = 0 < contact.load < math.inf  # NaN is not
         if positive and abs(math.log(load / contact.load)) <= level.tolerance:
             return contact, solves
-        if not positive or len(solves) >= max_iterations:
+        if not positive or len(solves) >= _MOST_SOLVES:
             raise NotConverged(
                 f"the contact radius did not converge on the {level.name} mesh: after {len(solves)} solves, "
-                f"at {a:.4g} a_h, the load is {contact.load / load:.6g} of the required one; raise "
-                "max_iterations, or check the thicknesses and the ratio of the moduli"
+                f"at {a:.4g} a_h, the load is {contact.load / load:.6g} of the required one; check "
+                "the thicknesses and the ratio of the moduli"
             )
         a = contact.radius_at(load)
         if not 1 / _STRETCH < a / meshes[0].contact_radius < _STRETCH:

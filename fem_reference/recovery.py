@@ -33,7 +33,7 @@ EDGE_SERIES = 20.0, 5000.0
 # A displaced edge adds the power -1/2, which is fitted and left out.
 _POWERS = np.array([-0.5, 0.5, 1.0, 1.5, 2.0])
 
-_TRACTIONS = [2, 3, 5]  # rows of the stress on a plane z = const
+TRACTIONS = [2, 3, 5]  # rows of the stress on a plane z = const
 # Rows of the displacement and of the strain that are odd in r, by harmonic.
 _ODD = ([0], [3]), ([2], [0, 1, 2, 4])
 
@@ -107,7 +107,7 @@ class HarmonicField:
         """Fields (fields, n) and strains (strains, n)."""
         u = self.fields.reshape(-1, self.discretisation.N)[:, at.unknowns]
         values, d_r, d_z = np.einsum("fin,kin->kfn", u, at.shapes)
-        A_r, A_z, A_0 = self._operator
+        A_r, A_z, A_0 = strain_operator(self.harmonic)
         return values, A_r @ d_r + A_z @ d_z + A_0 @ (values / at.r)
 
     @cached_property
@@ -142,10 +142,6 @@ class HarmonicField:
             strain[row, near] = value[:, row]
         return strain
 
-    @cached_property
-    def _operator(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        return strain_operator(self.harmonic)
-
     def _surface_tractions(self, r: np.ndarray) -> np.ndarray:
         """(sigma_zz, sigma_rz, sigma_tz) on the surface, shape (3, n)."""
         # q in +x: q_r = q cos, q_theta = -q sin on the solid, whose outward normal is -z
@@ -175,7 +171,7 @@ def stress_of(
         mean, total = np.zeros((3, on_interface.size)), 0.0
         for (E_k, nu_k), side in zip(materials[upper : upper + 2], sides, strict=True):
             weight = E_k / (E_k * (1 - nu_k) / ((1 + nu_k) * (1 - 2 * nu_k))) ** 2
-            mean += weight * _hooke(strain_on(side), materials, side.layer)[_TRACTIONS]
+            mean += weight * _hooke(strain_on(side), materials, side.layer)[TRACTIONS]
             total += weight
         of_plane = strain[:, on_interface], mean / total, E[on_interface], nu[on_interface]
         stress[:, on_interface] = _on_plane(*of_plane)

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from .contact import peak
 from .estimate import Estimates, Uncertainty
 from .location import SolidPoints, solid_points
 from .scaling import Units
@@ -20,9 +19,8 @@ class Diagnostics:
 
     iterations : contact solves on all levels
     dofs, triangles, order : size of the final level
-    residual_gap : largest |gap| at the contact's nodes over the approach
-    residual_pressure : most negative gap outside, or pressure inside, over approach or peak; 0 when none
-    residual_load : relative error of the load
+    residual_gap : deepest penetration outside the contact over the approach; 0 when none
+    residual_pressure : largest tension inside over the peak; 0 when none
     residual_equilibrium : largest nodal out-of-balance force over the load; none under a prescribed pressure
     seconds : wall time
     history : (level, contact radius [m], load [N]) of every contact solve
@@ -34,18 +32,9 @@ class Diagnostics:
     order: int
     residual_gap: float = 0.0
     residual_pressure: float = 0.0
-    residual_load: float = 0.0
     residual_equilibrium: float = 0.0
     seconds: float
     history: tuple[tuple[str, float, float], ...]
-
-
-@dataclass(frozen=True, eq=False)
-class BodyFields:
-    """Fields of one body, and their estimated errors or None, in scaled units."""
-
-    state: ElasticState
-    estimates: Estimates | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +46,8 @@ class Solution:
     solution can be pickled; under a prescribed pressure given as a callable, if that can be.
 
     surface_nodes : increasing x on y = 0, z = 0 at which pressure is a nodal value
-    uncertainty   : of the three scalars, None when not estimated
-    bodies, units : fields with their estimated errors of the flat, then of an elastic ball; scaled units
+    states, estimates : fields of the flat, then of an elastic ball, and their estimated errors if any, in
+        scaled ``units``
     stiffness     : d load / d approach [N/m] of the sphere, as of a flat punch of its contact radius
         (Pharr, Oliver and Brotzen, J. Mater. Res. 7 (1992) 613-617); None under a prescribed pressure
     stiffness_uncertainty : absolute, None when not estimated
@@ -68,9 +57,9 @@ class Solution:
     approach: float
     peak_pressure: float
     surface_nodes: np.ndarray
-    uncertainty: Uncertainty | None
     diagnostics: Diagnostics
-    bodies: tuple[BodyFields, ...] = field(repr=False)
+    states: tuple[ElasticState, ...] = field(repr=False)
+    estimates: tuple[Estimates, ...] = field(repr=False)
     units: Units = field(repr=False)
     stiffness: float | None = None
     stiffness_uncertainty: float | None = None
@@ -84,34 +73,37 @@ class Solution:
         """
         started = time.perf_counter()
         check_friction(friction)
-        bodies = []
-        # the traction on the ball is opposite
-        for body, f in zip(self.bodies, (friction, -friction), strict=False):
-            state, estimates = body.state.with_friction(f), body.estimates
-            bodies.append(BodyFields(state, estimates and estimates.with_friction(state, f)))
+        opposed = (friction, -friction)  # on the flat, on the ball
+        states = tuple(map(ElasticState.with_friction, self.states, opposed))
+        estimates = tuple(map(Estimates.with_friction, self.estimates, states, opposed))
         seconds = self.diagnostics.seconds + time.perf_counter() - started
-        return replace(self, bodies=tuple(bodies), diagnostics=replace(self.diagnostics, seconds=seconds))
+        diagnostics = replace(self.diagnostics, seconds=seconds)
+        return replace(self, states=states, estimates=estimates, diagnostics=diagnostics)
+
+    @property
+    def uncertainty(self) -> Uncertainty | None:
+        """Of the three scalars, None when not estimated."""
+        return self.estimates[0].scalars if self.estimates else None
 
     @property
     def state(self) -> ElasticState:
         """Fields of the flat in scaled units."""
-        return self.bodies[0].state
+        return self.states[0]
 
     @property
     def coarser(self) -> "Solution | None":
         """The companion by which the errors were estimated, without estimates; None where there is none."""
-        states = [body.estimates.companion for body in self.bodies if body.estimates is not None]
-        if not states:
+        if not self.estimates:
             return None
-        _, largest = peak(states[0].pressure, states[0].discretisation.contact_vertices)
+        states = tuple(estimate.companion for estimate in self.estimates)
         approach = sum(state.central_displacement for state in states)
         return replace(
             self,
             contact_radius=states[0].mesh.contact_radius * self.units.length,
             approach=approach * self.units.displacement,
-            peak_pressure=largest * self.units.pressure,
-            uncertainty=None,
-            bodies=tuple(BodyFields(state, None) for state in states),
+            peak_pressure=states[0].peak[1] * self.units.pressure,
+            states=states,
+            estimates=(),
             stiffness=None,
             stiffness_uncertainty=None,
         )
@@ -135,7 +127,7 @@ class Solution:
         body : "flat" or "ball"
         Raises ValueError for a point outside the solid or outside its ``layer``, and for a rigid ball.
         """
-        return self._stress(self._of(body).state, self._points(x, y, z, layer, body))
+        return self._stress(self._points(x, y, z, layer, body), body)
 
     def stress_with_uncertainty(
         self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat"
@@ -151,7 +143,7 @@ class Solution:
             error = error + estimates.tangential(points.located) * np.stack([cos] * 4 + [sin] * 2)
         # absolute values of all products in the rotation add up
         U = tensor(error * self.units.pressure, cos, sin, sign=1.0).reshape(3, 3, *points.shape)
-        return self._stress(self._of(body).state, points), U
+        return self._stress(points, body), U
 
     def stress_uncertainty(
         self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat"
@@ -162,69 +154,43 @@ class Solution:
     def displacement(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
         """Displacement (u_x, u_y, u_z) [m], u_z into the body; shape (3,) + that of the points."""
         points = self._points(x, y, z, None, body)
-        return self._displacement(self._of(body).state, points, None)[0]
+        u, _ = self.states[self._number(body)](points)
+        return cartesian(u, points.cos, points.sin).reshape(3, *points.shape) * self.units.displacement
 
-    def displacement_with_uncertainty(
-        self, x: Any, y: Any, z: Any, body: str = "flat"
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """``displacement`` and the absolute numerical uncertainty of each component [m], same shape.
+    def displacement_uncertainty(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
+        """Absolute numerical uncertainty of each component of ``displacement`` [m], same shape.
 
         Raises ValueError when the solution was solved without an estimate.
         """
-        points = self._points(x, y, z, None, body)
-        return self._displacement(self._of(body).state, points, self._estimated(body))
-
-    def displacement_uncertainty(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
-        """The second part of ``displacement_with_uncertainty`` alone."""
-        return self.displacement_with_uncertainty(x, y, z, body)[1]
-
-    def _displacement(
-        self, state: ElasticState, points: SolidPoints, estimates: Estimates | None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement, and its uncertainty by ``estimates``, zero without."""
-        cos, sin = points.cos, points.sin
-        u, error = np.zeros((2, 3, cos.size))
-        harmonics = (np.ones((3, cos.size)), np.stack([cos, sin, cos]))
-        fields = (state.normal, state.tangential)
-        found = (None, None) if estimates is None else (estimates.normal, estimates.tangential)
-        for angle, field_, estimate in zip(harmonics, fields, found, strict=True):
-            if field_ is not None:
-                amplitude, _ = field_(points.located)
-                u += angle * amplitude
-                if estimate is not None:
-                    error += np.abs(angle) * estimate.displacement(amplitude, points.located)
-        x = cartesian(u, cos, sin)
-        cos, sin = np.abs(cos), np.abs(sin)
+        estimates, points = self._estimated(body), self._points(x, y, z, None, body)
+        cos, sin = np.abs(points.cos), np.abs(points.sin)
+        error = estimates.normal.displacement(points.located)
+        if estimates.tangential is not None:
+            error = error + estimates.tangential.displacement(points.located) * np.stack([cos, sin, cos])
         U = np.stack([error[0] * cos + error[1] * sin, error[0] * sin + error[1] * cos, error[2]])
-        unit = self.units.displacement
-        return x.reshape(3, *points.shape) * unit, U.reshape(3, *points.shape) * unit
+        return U.reshape(3, *points.shape) * self.units.displacement
 
-    def _of(self, body: str) -> BodyFields:
-        known = dict(zip(("flat", "ball"), self.bodies, strict=False))
+    def _number(self, body: str) -> int:
+        known = ("flat", "ball")[: len(self.states)]
         if body not in known:
             raise ValueError(f"body = {body!r}; this contact has {' and '.join(known)}")
-        return known[body]
+        return known.index(body)
 
     def _estimated(self, body: str) -> Estimates:
-        estimates = self._of(body).estimates
-        if estimates is None:
+        if not self.estimates:
             raise ValueError("this solution has no uncertainty; solve with estimate_uncertainty=True")
-        return estimates
+        return self.estimates[self._number(body)]
 
     def _radius(self, x: Any, y: Any) -> np.ndarray:
         return np.hypot(np.asarray(x, dtype=float), np.asarray(y, dtype=float)) / self.units.length
 
     def _points(self, x: Any, y: Any, z: Any, layer: int | None, body: str) -> SolidPoints:
-        locator = self._of(body).state.discretisation.locator
+        locator = self.states[self._number(body)].discretisation.locator
         return solid_points(locator, self.units.length, x, y, z, layer)
 
-    def _stress(self, state: ElasticState, points: SolidPoints) -> np.ndarray:
-        cos, sin = points.cos, points.sin
-        _, sigma = state.normal(points.located)
-        if state.tangential is not None:
-            _, sliding = state.tangential(points.located)
-            sigma = sigma + sliding * np.stack([cos] * 4 + [sin] * 2)
-        return tensor(sigma * self.units.pressure, cos, sin).reshape(3, 3, *points.shape)
+    def _stress(self, points: SolidPoints, body: str) -> np.ndarray:
+        _, sigma = self.states[self._number(body)](points)
+        return tensor(sigma * self.units.pressure, points.cos, points.sin).reshape(3, 3, *points.shape)
 
 
 def cartesian(u: np.ndarray, cos: np.ndarray, sin: np.ndarray) -> np.ndarray:

@@ -12,14 +12,14 @@ from itertools import pairwise
 import numpy as np
 
 from .axisymmetric import Discretisation
-from .contact import FixedRadiusContact, complementarity, peak
+from .contact import complementarity
 from .estimate import Estimates, contact_estimates, estimates
 from .levels import NotConverged, companion_grading, final_grading, meshes_at, solve_levels
-from .loading import resultant, solve_traction
+from .loading import solve_traction
 from .mesh import Grading
 from .recovery import HarmonicField
 from .scaling import Coatings, LayeredSolid, Units
-from .solution import BodyFields, Diagnostics, Solution
+from .solution import Diagnostics, Solution
 from .state import ElasticState
 from .validation import (
     check_ball,
@@ -55,7 +55,6 @@ def solve(
     quality: str = "default",
     size: float | None = None,
     far: float = 1000.0,
-    max_iterations: int = 30,
     estimate_uncertainty: bool = True,
     gap: str = "parabola",
 ) -> Solution:
@@ -70,14 +69,13 @@ def solve(
     quality : "fast" (about 1e-3), "default" (about 1e-5) or "fine"; finer next to a large step of moduli
     size    : triangle size over its distance from the contact edge, 0.08 to 0.5; None for that of ``quality``
     far     : distance of the outer boundary over (a_h + thickness of all coatings)
-    max_iterations : contact solves allowed on each mesh level
     gap     : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2)
     The approach is that of distant points of both bodies.
     Poisson ratios up to 0.49 do not lock at order 4; above, digits are lost as 1/(1 - 2 nu), and 0.5 is
     refused. Raises ValueError for bad input, NotConverged when no contact radius has the load.
     """
     started = time.perf_counter()
-    check_positive(radius=radius, load=load, far=far, max_iterations=max_iterations)
+    check_positive(radius=radius, load=load, far=far)
     check_materials(coatings, substrate, friction)
     check_choice("order", order, (2, 3, 4))
     check_choice("gap", gap, ("parabola", "sphere"))
@@ -101,25 +99,30 @@ def solve(
         target,
         order=order,
         size=size,
-        max_iterations=max_iterations,
         with_companion=estimate_uncertainty,
         curvature=a_h / radius if gap == "sphere" else 0.0,
     )
     d = final.discretisation
     check_radius(final.contact_radius * a_h, radius)
-    penetration, tension = _checked_complementarity(final)
+    penetration, tension = complementarity(final)
+    if not (0 <= penetration <= 1e-3 and 0 <= tension <= 1e-3):  # also true of NaN and -inf
+        raise NotConverged(
+            f"the contact is not one disc: penetration outside is {penetration:.2g} of the approach, tension "
+            f"inside {tension:.2g} of the peak pressure; use quality='fine', or check the Poisson ratios"
+        )
+    if not np.isfinite(final.stiffness):
+        raise NotConverged(f"the contact's stiffness dW/d delta is {final.stiffness}; use quality='fine'")
     pairs = zip(solids, (None, final.ball), strict=False)
     states = tuple(ElasticState.of_contact(solid, final, body) for solid, body in pairs)
-    found: tuple[Estimates | None, ...] = (None,) * len(states)
+    found: tuple[Estimates, ...] = ()
     stiffness_error = None
     if companion:
-        found, stiffness_error = contact_estimates(final, companion, states, unit, target, size)
+        found, stiffness_error = contact_estimates(final, companion, states, unit, size)
     frictionless = Solution(
         contact_radius=final.contact_radius * unit.length,
         approach=final.approach * unit.displacement,
-        peak_pressure=peak(final.pressure, final.pressure.vertices)[1] * unit.pressure,
+        peak_pressure=states[0].peak[1] * unit.pressure,
         surface_nodes=_surface_nodes(d) * unit.length,
-        uncertainty=None if found[0] is None else found[0].scalars,
         diagnostics=Diagnostics(
             iterations=len(history),
             dofs=sum(2 * state.discretisation.N for state in states),
@@ -127,12 +130,12 @@ def solve(
             order=order,
             residual_gap=penetration,
             residual_pressure=tension,
-            residual_load=abs(final.load / target - 1),
             residual_equilibrium=final.residual,
             seconds=time.perf_counter() - started,
             history=tuple((name, a * a_h, W * unit.load) for name, a, W in history),
         ),
-        bodies=tuple(BodyFields(*each) for each in zip(states, found, strict=True)),
+        states=states,
+        estimates=found,
         units=unit,
         stiffness=final.stiffness * unit.load / unit.displacement,
         stiffness_uncertainty=stiffness_error,
@@ -174,11 +177,12 @@ def solve_prescribed(
         fields = solve_traction(d, solid, 0, p)
         return ElasticState(solid, HarmonicField(d, fields, solid.materials, 0, p, -1.0, False), None)
 
-    state, found = state_on(final_grading(size)), None
+    state = state_on(final_grading(size))
+    found: tuple[Estimates, ...] = ()
     if estimate_uncertainty:
         companion = state_on(companion_grading(size))
         change = abs(state.central_displacement - companion.central_displacement)
-        found = estimates(state, companion, unit, (0.0, change), 0.0, 0.0, size, (state,))
+        found = estimates((state,), (companion,), unit, (0.0, change), 0.0, 0.0, size)
     d = state.discretisation
     nodes = _surface_nodes(d)
     frictionless = Solution(
@@ -186,15 +190,15 @@ def solve_prescribed(
         approach=state.central_displacement * unit.displacement,
         peak_pressure=float(np.max(p(np.abs(nodes)))) * unit.pressure,
         surface_nodes=nodes * unit.length,
-        uncertainty=None if found is None else found.scalars,
         diagnostics=Diagnostics(
             dofs=2 * d.N,
             triangles=int(d.mesh.layer.size),
             order=order,
             seconds=time.perf_counter() - started,
-            history=(("final", load_radius, resultant(d, p) * unit.load),),
+            history=(("final", load_radius, float(2 * np.pi * d.contact_load(p).sum()) * unit.load),),
         ),
-        bodies=(BodyFields(state, found),),
+        states=(state,),
+        estimates=found,
         units=unit,
     )
     return frictionless.with_friction(friction)
@@ -212,22 +216,6 @@ def _size(quality: str, size: float | None, bodies: Sequence[Sequence[tuple[floa
     if not 0.08 <= size <= 0.5:
         raise ValueError(f"size = {size:g}; choose it between 0.08 (a minute, gigabytes) and 0.5 (coarse)")
     return size
-
-
-def _checked_complementarity(contact: FixedRadiusContact) -> tuple[float, float]:
-    """Relative penetration outside and tension inside the contact.
-
-    Raises NotConverged where either is too large, or where the stiffness is not finite.
-    """
-    penetration, tension = complementarity(contact)
-    if not (0 <= penetration <= 1e-3 and 0 <= tension <= 1e-3):  # also true of NaN and -inf
-        raise NotConverged(
-            f"the contact is not one disc: penetration outside is {penetration:.2g} of the approach, tension "
-            f"inside {tension:.2g} of the peak pressure; use quality='fine', or check the Poisson ratios"
-        )
-    if not np.isfinite(contact.stiffness):
-        raise NotConverged(f"the contact's stiffness dW/d delta is {contact.stiffness}; use quality='fine'")
-    return penetration, tension
 
 
 def _surface_nodes(d: Discretisation) -> np.ndarray:

@@ -4,10 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation
 from .contact import Ball, FixedRadiusContact
-from .loading import resultant, solve_traction
+from .loading import solve_traction
+from .location import SolidPoints
 from .mesh import MeridianMesh
 from .recovery import HarmonicField
 from .scaling import LayeredSolid
@@ -40,6 +42,16 @@ class ElasticState:
         sliding = HarmonicField(d, fields, self.solid.materials, 1, pressure, -friction, root_at_edge)
         return replace(self, tangential=sliding)
 
+    def __call__(self, points: SolidPoints) -> tuple[np.ndarray, np.ndarray]:
+        """Displacement (3, n) and stress (6, n), cylindrical as in ``HarmonicField``."""
+        u, sigma = self.normal(points.located)
+        if self.tangential is not None:
+            cos, sin = points.cos, points.sin
+            u_sliding, sliding = self.tangential(points.located)
+            u = u + u_sliding * np.stack([cos, sin, cos])
+            sigma = sigma + sliding * np.stack([cos] * 4 + [sin] * 2)
+        return u, sigma
+
     @property
     def discretisation(self) -> Discretisation:
         return self.normal.discretisation
@@ -64,11 +76,27 @@ class ElasticState:
         assert field is not None
         distance = d.locations.max(axis=0) / self.mesh.far
         halfway = np.flatnonzero((distance > 0.35) & (distance < 0.55))
-        load = -field.factor * resultant(d, self.pressure)
+        load = -field.factor * 2 * np.pi * d.contact_load(self.pressure).sum()
         far = self.solid.far_fields(harmonic, load, d.locations[:, halfway])
         missing = float(np.abs(field.fields.reshape(-1, d.N)[:, halfway] - far).max()) / 3
         stiffest = max(E / (1 - 2 * nu) for E, nu in self.solid.materials)
         return missing, stiffest * missing / self.mesh.far, 2 * missing / self.mesh.far**2
+
+    @property
+    def peak(self) -> tuple[float, float]:
+        """Radius and value of the largest pressure, on the axis or, where a stiff film bends, on a ring."""
+        vertices = self.discretisation.contact_vertices
+        r = np.unique(np.linspace(vertices[:-1], vertices[1:], 9))
+        best = int(np.argmax(self.pressure(r)))
+        if best == 0:
+            return 0.0, float(self.pressure(r[:1])[0])
+        found = minimize_scalar(
+            lambda radius: -float(self.pressure(np.array([radius]))[0]),
+            bounds=(r[best - 1], r[min(best + 1, r.size - 1)]),
+            method="bounded",
+            options={"xatol": 1e-6 * r[-1]},
+        )
+        return float(found.x), -float(found.fun)
 
     @property
     def central_displacement(self) -> float:

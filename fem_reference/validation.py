@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -96,7 +97,7 @@ def check_radius(contact_radius: float, radius: float) -> None:
 class GivenPressure:
     """A prescribed pressure over ``scale`` as a function of r over ``radius``; zero beyond the load."""
 
-    given: float | Callable[[np.ndarray], np.ndarray]
+    given: Callable[[np.ndarray], np.ndarray]
     radius: float
     scale: float
 
@@ -105,8 +106,7 @@ class GivenPressure:
         inside = r <= 1 + 1e-12
         values = np.zeros(r.shape)
         # a callable need not be defined beyond the load
-        si = self.radius * np.minimum(r[inside], 1.0)
-        values[inside] = self.given(si) if callable(self.given) else self.given
+        values[inside] = self.given(self.radius * np.minimum(r[inside], 1.0))
         return values / self.scale
 
 
@@ -119,11 +119,12 @@ def prescribed_pressure(
     """
     if not callable(pressure):
         check_positive(pressure=pressure)
+        pressure = partial(np.full_like, fill_value=pressure)
     # Gauss points avoid r = 0 and r = load_radius, where a callable may be singular
     s, weight = np.polynomial.legendre.leggauss(40)
     r = load_radius * (s + 1) / 2
     try:
-        values = np.asarray(pressure(r) if callable(pressure) else np.full(r.shape, pressure), dtype=float)
+        values = np.asarray(pressure(r), dtype=float)
     except (TypeError, ValueError) as error:
         raise ValueError(f"pressure(r) fails on an array of radii ({error}); write it with numpy") from error
     if values.shape != r.shape or not np.all(np.isfinite(values)):

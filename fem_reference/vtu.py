@@ -35,33 +35,28 @@ class PlaneMesh:
 def plane_mesh(solution: "Solution") -> PlaneMesh:
     """The mesh of the plane y = 0 with its fields; with friction both halves x < 0 and x > 0."""
     mesh, length = solution.state.mesh, solution.units.length
-    layers, vertices = mesh.depths.size + 1, mesh.points.shape[1]
-    apart = mesh.triangles + mesh.layer * vertices  # no vertex is shared between layers
-    plane = MeshTri(np.tile(mesh.points * length, layers), apart, sort_t=False).remove_unused_nodes()
-    points = np.hstack([plane.p, plane.p[:, plane.facets].mean(axis=1)])
-    cells = np.vstack([plane.t, plane.nvertices + plane.t2f]).T
-    owner = np.zeros(points.shape[1], dtype=int)
-    owner[cells.ravel()] = np.repeat(mesh.layer, 6)
     halves = (1.0, -1.0) if solution.state.tangential is not None else (1.0,)
-    x = np.concatenate([half * points[0] for half in halves])
-    z, owner = np.tile(points[1], len(halves)), np.tile(owner, len(halves))
-    # a mirrored triangle runs clockwise: swap two corners and their middles
-    mirrored = cells[:, [0, 2, 1, 5, 4, 3]]
-    blocks = [cells] if len(halves) == 1 else [cells, mirrored + points.shape[1]]
-    displacement = np.zeros((x.size, 3))
+    layers, vertices = mesh.depths.size + 1, mesh.points.shape[1]
+    # no vertex is shared between layers or halves
+    corners = np.hstack([mesh.points * [[half * length], [length]] for half in halves for _ in range(layers)])
+    apart = mesh.triangles + mesh.layer * vertices
+    # a mirrored triangle runs clockwise: swap two corners
+    triangles = np.hstack([apart, apart[[0, 2, 1]] + layers * vertices][: len(halves)])
+    plane = MeshTri(corners, triangles, sort_t=False).remove_unused_nodes()
+    x, z = np.hstack([plane.p, plane.p[:, plane.facets].mean(axis=1)])
+    cells = np.vstack([plane.t, plane.nvertices + plane.t2f]).T
+    layer = np.tile(mesh.layer, len(halves))
     sigma = np.zeros((3, 3, x.size))
     for k in range(layers):
-        mine = owner == k
-        displacement[mine] = solution.displacement(x[mine], 0.0, z[mine]).T
+        mine = np.unique(cells[layer == k])
         sigma[:, :, mine] = solution.stress(x[mine], 0.0, z[mine], layer=k)
     deviator = sigma - np.eye(3)[:, :, None] * np.einsum("iin->n", sigma) / 3
     point_data = {
-        "displacement [m]": displacement,
+        "displacement [m]": solution.displacement(x, 0.0, z).T,
         **{f"sigma_{name} [Pa]": sigma[ij] for name, ij in STRESSES.items()},
         "von_mises [Pa]": np.sqrt(1.5 * np.einsum("ijn,ijn->n", deviator, deviator)),
     }
-    points = np.stack([x, np.zeros(x.size), z], axis=1)
-    return PlaneMesh(points, np.concatenate(blocks), np.tile(mesh.layer, len(halves)), point_data)
+    return PlaneMesh(np.stack([x, 0 * x, z], axis=1), cells, layer, point_data)
 
 
 def write_vtu(solution: "Solution", path: str | PathLike[str]) -> Path:

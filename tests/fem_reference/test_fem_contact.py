@@ -12,7 +12,6 @@ import pytest
 from fem_reference import solve, solve_prescribed
 from fem_reference.axisymmetric import Discretisation
 from fem_reference.contact import _even_at_the_axis, complementarity, solve_at_radius
-from fem_reference.coupling import Coupling
 from fem_reference.mesh import Grading, meridian_mesh
 from fem_reference.scaling import LayeredSolid
 
@@ -211,7 +210,7 @@ def at_radius(flat, ball=None):
     solids = [layered(*body) for body in (flat, ball) if body]
     stacks = tuple(sorted(solid.thicknesses for solid in solids))
     one, *other = (coarse(solid.thicknesses, stacks) for solid in solids)
-    return solve_at_radius(solids[0], one, (solids[1], Coupling(one, other[0])) if ball else None)
+    return solve_at_radius(solids[0], one, (solids[1], other[0]) if ball else None)
 
 
 def test_a_ball_like_the_flat_halves_the_pressure():

@@ -72,13 +72,13 @@ def test_a_plant_is_taken_out_when_the_trial_fails():
 
 
 def test_a_function_imported_by_name_is_exchanged_there_too():
-    from fem_reference import coupling, linear_system, loading
+    from fem_reference import linear_system, loading
 
     change = Edit("fem_reference.linear_system:constrained_solve", "found + factor", "found + 2 * factor")
     with planted((change,)):
-        assert coupling.constrained_solve is loading.constrained_solve is linear_system.constrained_solve
-        assert "planted" in coupling.constrained_solve.__code__.co_filename
-    assert "planted" not in coupling.constrained_solve.__code__.co_filename
+        assert loading.constrained_solve is linear_system.constrained_solve
+        assert "planted" in loading.constrained_solve.__code__.co_filename
+    assert "planted" not in loading.constrained_solve.__code__.co_filename
 
 
 def test_two_edits_of_one_function_both_take():
