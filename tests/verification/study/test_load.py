@@ -47,7 +47,7 @@ def power_law(load, residual=0.0, factor=1e8):
     stress = {mode: 0.3 * p_h + (residual if mode == "sigma_xx_surface" else 0.0) for mode in QUANTITIES}
     stress = {mode: np.maximum(value, 0) for mode, value in stress.items()}
     zero = np.zeros(load.size)
-    return Ramp(1.0, 3e-6, 0.0, residual, load, p_h, zero, p_h, zero, stress, dict.fromkeys(QUANTITIES, zero))
+    return Ramp(1.0, 3e-6, 0.0, residual, load, p_h, p_h, stress, dict.fromkeys(QUANTITIES, zero))
 
 
 @pytest.mark.slow

@@ -220,7 +220,6 @@ def judged(curve: Curve, criteria: Criteria) -> Judged:
     bound = scale * (stress + np.nan_to_num([curve.uncertainty[mode] for mode in strengths]))
     s = np.log(curve.h)
     h = np.geomspace(curve.h[0], curve.h[-1], SAMPLES)
-    h[0], h[-1] = curve.h[0], curve.h[-1]
     return Judged(
         curve,
         tuple(strengths),

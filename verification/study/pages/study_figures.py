@@ -343,12 +343,11 @@ def governing_figure(choices: Sequence[Choice], units: Units) -> list[Drawn]:
     Between the solved points, which are dots, each use of strength is read by monotone cubics in log h,
     then by straight lines in log E1/E2.
     """
-    grid = _map(choices)
-    if grid is None:
+    if len(choices) < 2:
         return []
     first = choices[0].judgements[0]
     modes, size = first.modes, first.curve.a_h / units.metre
-    over, ratio, use = grid
+    over, ratio, use = _map(choices)
     h, governing, largest = over * size, use.argmax(axis=0), use.max(axis=0)
     with sheet(78, len(modes), right=4) as figure:
         axes = figure.subplots(1, 1)
@@ -405,11 +404,9 @@ def pale(colour: str) -> tuple[float, float, float]:
     return (0.45 * r + 0.55, 0.45 * g + 0.55, 0.45 * b + 0.55)
 
 
-def _map(choices: Sequence[Choice]) -> tuple[Array, Array, Array] | None:
-    """h/a_h, E1/E2, uses of strength (modes, ratios, thicknesses) on a dense grid; None for one modulus."""
+def _map(choices: Sequence[Choice]) -> tuple[Array, Array, Array]:
+    """h/a_h, E1/E2, uses of strength (modes, ratios, thicknesses) on a dense grid."""
     members = sorted(choices, key=lambda one: one.judgements[0].curve.ratio)
-    if len(members) < 2:
-        return None
     h = np.geomspace(max(one.h[0] for one in members), min(one.h[-1] for one in members), 240)
     known = np.log([one.judgements[0].curve.ratio for one in members])
     ratio = np.exp(np.linspace(known[0], known[-1], 120))
