@@ -17,7 +17,7 @@ from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import message_of
 from verification.running.provenance import versions
-from verification.sources.source_registry import SOURCES
+from verification.sources.source_registry import solvers
 from verification.study.largest_stresses import QUANTITIES as STRESSES
 from verification.study.largest_stresses import quantities
 from verification.study.study_table import SCALARS, SCALES
@@ -38,9 +38,7 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     problem = problem_of(request, 1.0 if any(frictions) else 0.0)
     try:
         with threadpool_limits(1):  # the order of sums over threads changes the last digit
-            solve = SOURCES[request["source"]].solve
-            assert solve is not None
-            solution = solve(problem, request["numerics"])
+            solution = solvers()[request["source"]](problem, request["numerics"])
             swept = len(request.get("above", ()))
             rows = _rows(solution, problem, frictions, request["residual"], swept)
     except Exception as error:  # a point that fails is a row with its message

@@ -143,7 +143,7 @@ def test_courses_pass_through_the_largest_tensions(solved):
 
 
 def test_summary_names_the_layer_the_place_and_the_side_of_the_largest_tension(solved):
-    bare, sliding, elastic, layered = (summary(problem, found) for problem, found in solved.items())
+    bare, sliding, elastic, layered = (summary(problem, found, {}) for problem, found in solved.items())
     assert "170 MPa" in bare
     assert "789 MPa" in bare
     assert "behind" in sliding
@@ -155,7 +155,7 @@ def test_summary_names_the_layer_the_place_and_the_side_of_the_largest_tension(s
     assert "coating 1 (DLC)" in named
     assert "coating 2 (" not in named
     squeezed = replace(solved[BARE], extremes=tuple(replace(e, value=0.0) for e in solved[BARE].extremes))
-    assert "170 MPa" not in summary(BARE, squeezed)
+    assert "170 MPa" not in summary(BARE, squeezed, {})
 
 
 def test_differences_are_by_key_with_both_uncertainties(solved):

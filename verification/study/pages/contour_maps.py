@@ -9,8 +9,9 @@ from matplotlib.ticker import MaxNLocator
 from verification.cases.unit_numbers import Units
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact
-from verification.problem.quantity import IN_PLANE, QUANTITIES, von_mises
+from verification.problem.quantity import QUANTITIES, von_mises
 from verification.sources.source_registry import METHODS, solvers
+from verification.study.friction_planes import XX, XZ, in_plane
 from verification.study.largest_stresses import with_residual
 from verification.study.pages.study_figures import Drawn, drawn, sheet
 from verification.study.study_plan import Study
@@ -132,10 +133,8 @@ def _fields(
     solution: Any, x: Array, z: Array, layer: int, residual: float, units: Units
 ) -> tuple[Array, Array, Array]:
     sigma = solution.stress(x[None, :], 0.0, z[:, None], layer=layer)
-    s = np.array([sigma[component] for component in IN_PLANE.values()]) / units.pascal
-    names, added = list(IN_PLANE), residual / units.pascal
-    stress = (s[names.index("sigma_xx")] + added, s[names.index("sigma_xz")])
-    return *stress, np.asarray(with_residual(von_mises, added)(s))
+    s, added = in_plane(sigma) / units.pascal, residual / units.pascal
+    return s[XX] + added, s[XZ], np.asarray(with_residual(von_mises, added)(s))
 
 
 def _range(values: Sequence[Array]) -> tuple[float, float]:
