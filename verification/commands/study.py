@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from cyclopts import Parameter
 from rich.console import Console
@@ -30,10 +30,6 @@ from verification.regression.run_exit_codes import EXIT
 from verification.running.provenance import commit, cores, hardware
 from verification.sources.source_registry import SOURCES
 from verification.study.study_plan import Study, read_study_file, shipped_studies
-
-if TYPE_CHECKING:
-    from verification.study.pages.thickness_page import Written
-    from verification.study.study_engine import Outcome as StudyOutcome
 
 LABELS = {name: source.label for name, source in SOURCES.items()}
 FIGURE_GROUPS = 5
@@ -115,7 +111,8 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
     jobs = cores() if options.jobs is None else options.jobs
     if jobs < 1 or (limit is not None and limit < 1):
         raise CommandError(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
-    chosen = _choose(plan)
+    shipped = shipped_studies()
+    chosen = read_study_file(path_of(plan, shipped, f"study ({', '.join(shipped)})"))
     if loads != (chosen.loads is not None):
         what = "sweeps the load; use coatcheck study load" if chosen.loads else "has no sweep.load"
         raise CommandError(f"{plan}: this study {what}")
@@ -127,16 +124,26 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
     if chosen.cross_check:
         require_gmsh()
 
+    from verification.study.pages.load_page import write_load_report
+    from verification.study.pages.thickness_page import write_study_report
     from verification.study.study_engine import run_study, table_path
 
+    write_report = write_load_report if loads else write_study_report
     begin = time.perf_counter()
-    written = None
     try:
         if not silent:
             sys.stderr.write(f"coatcheck: {_forecast(chosen, output, jobs, limit)}\n")
         with _bars(silent) as (report, drawing):
             came = run_study(chosen, output, jobs, limit=limit, report=report)
-            written = _page(chosen, came, time.perf_counter() - begin, options.figures, drawing)
+            facts = [
+                ("solves", f"{came.done} done, {came.kept} from the cache"),
+                ("duration", f"{time.perf_counter() - begin:.0f} s"),
+                ("commit", commit() or "not in a repository"),
+                ("machine", hardware()),
+            ]
+            written = write_report(
+                came.table, chosen, output, facts, figures=options.figures, drawing=drawing
+            )
     except KeyboardInterrupt:
         sys.stderr.write(
             f"\ncoatcheck: stopped; solved points are in {table_path(output, chosen)}, "
@@ -177,31 +184,6 @@ def _forecast(chosen: Study, output: Path, jobs: int, limit: int | None) -> str:
 
 def _rounded(seconds: float) -> str:
     return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
-
-
-def _page(
-    chosen: Study,
-    came: "StudyOutcome",
-    seconds: float,
-    figures: bool,
-    drawing: Callable[[str], None],
-) -> "Written":
-    from verification.study.pages.load_page import write_load_report
-    from verification.study.pages.thickness_page import write_study_report
-
-    facts = [
-        ("solves", f"{came.done} done, {came.kept} from the cache"),
-        ("duration", f"{seconds:.0f} s"),
-        ("commit", commit() or "not in a repository"),
-        ("machine", hardware()),
-    ]
-    write = write_study_report if chosen.loads is None else write_load_report
-    return write(came.table, chosen, came.table.parent, facts, figures=figures, drawing=drawing)
-
-
-def _choose(plan: str) -> Study:
-    shipped = shipped_studies()
-    return read_study_file(path_of(plan, shipped, f"study ({', '.join(shipped)})"))
 
 
 @contextmanager

@@ -74,19 +74,20 @@ def write_load_report(
 def answers(study: Study, found: Sequence[Critical]) -> list[str]:
     """For each coating and thickness the critical load at the friction where it is lowest."""
     said = []
-    keys = dict.fromkeys((one.ramp.ratio, one.ramp.thickness) for one in found)
-    for ratio, thickness in keys:
-        group = [one for one in found if (one.ramp.ratio, one.ramp.thickness) == (ratio, thickness)]
-        worst = min(group, key=_weakness)
-        several = f"E1/E2 = {ratio:.3g}, " if len({key[0] for key in keys}) > 1 else ""
-        name = f"{several}{study.units.shown_length(thickness)}, f = {worst.ramp.friction:g}"
-        said.append(f"{name}: {_said(worst)}.")
+    several = len({one.ramp.ratio for one in found}) > 1
+    for one in _weakest(found):
+        coating = f"E1/E2 = {one.ramp.ratio:.3g}, " if several else ""
+        name = f"{coating}{study.units.shown_length(one.ramp.thickness)}, f = {one.ramp.friction:g}"
+        said.append(f"{name}: {_said(one)}.")
     return said
 
 
-def _weakness(one: Critical) -> tuple[float, float, float]:
-    """Sorts the friction with the lowest critical load first, the highest friction of equal ones."""
-    return one.first[1], one.first[0], -one.ramp.friction
+def _weakest(found: Sequence[Critical]) -> list[Critical]:
+    """Of each coating and thickness the lowest critical load, at the highest friction of equal ones."""
+    weakest: dict[tuple[float, float], Critical] = {}
+    for one in sorted(found, key=lambda one: (one.first[1], one.first[0], -one.ramp.friction)):
+        weakest.setdefault((one.ramp.ratio, one.ramp.thickness), one)
+    return [weakest[key] for key in dict.fromkeys((one.ramp.ratio, one.ramp.thickness) for one in found)]
 
 
 def _said(one: Critical) -> str:
@@ -206,10 +207,9 @@ def _tracks(study: Study, found: Sequence[Critical]) -> list[Drawn]:
     For each coating and thickness at the friction with the lowest critical load.
     """
     drawings, units = [], study.units
-    for ratio, thickness in dict.fromkeys((one.ramp.ratio, one.ramp.thickness) for one in found):
-        group = [one for one in found if (one.ramp.ratio, one.ramp.thickness) == (ratio, thickness)]
-        one = min(group, key=_weakness)
-        ramp, strengths = one.ramp, study.criteria.given()
+    strengths = study.criteria.given()
+    for one in _weakest(found):
+        ramp = one.ramp
         modes = list(strengths)
         colours = {mode: COLOURS[list(MODES).index(mode)] for mode in modes}
         rows = [
@@ -250,9 +250,9 @@ def _tracks(study: Study, found: Sequence[Critical]) -> list[Drawn]:
                 ]
                 for i in some
             ]
-            h = units.shown_length(thickness)
-            name = f"ramp_{ratio:.4g}_{thickness / units.metre:.4g}".replace(".", "_")
-            title = f"Load ramp, E1/E2 = {ratio:.4g}, {h}, f = {ramp.friction:g}"
+            h = units.shown_length(ramp.thickness)
+            name = f"ramp_{ramp.ratio:.4g}_{ramp.thickness / units.metre:.4g}".replace(".", "_")
+            title = f"Load ramp, E1/E2 = {ramp.ratio:.4g}, {h}, f = {ramp.friction:g}"
             caption = (
                 "Triangles: critical loads at median strength. Below: probability of failure, by first mode."
             )

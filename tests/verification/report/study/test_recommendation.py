@@ -7,7 +7,7 @@ import study_table
 from verification.cases.unit_numbers import Units
 from verification.study.choice.failure_criteria import Criteria, judged
 from verification.study.choice.thickness_choice import choice
-from verification.study.pages.thickness_page import answers, checked_messages, near, rounded
+from verification.study.pages.thickness_page import answers, checked_message, near, rounded
 from verification.study.study_table import read_columns
 from verification.study.thickness_curves import curves
 
@@ -20,11 +20,9 @@ def found(tmp_path_factory):
 
 
 def test_the_nearest_cross_check_is_named_with_its_difference(found):
-    judgement = judged(found[3], Criteria())
-    checked = judgement.curve.marks["fem_reference"]["sigma_xx_surface"][0]
-    (one,) = near(judgement, 0.9 * checked[1], "sigma_xx_surface")
-    assert (one.source, one.h) == ("fem_reference", checked[1])
-    assert one.difference == pytest.approx(3e-4, rel=1e-6)
+    checked = found[3].marks["fem_reference"]["sigma_xx_surface"][0]
+    nearest = near(found[3], 0.9 * checked[1], "sigma_xx_surface")
+    assert nearest == {"fem_reference": (checked[1], pytest.approx(3e-4, rel=1e-6))}
 
 
 def chosen(found, criteria, ratio=2.0):
@@ -43,8 +41,7 @@ def test_recommended_is_what_is_admissible_at_every_friction(found):
         assert (end.mode, end.friction) == ("sigma_xx_surface", 0.25)
     assert answer.count("f = 0.25") == 2
     assert "0.78" in answer
-    (checked,) = checked_messages([one], Units())
-    assert "0.4 MPa" in checked
+    assert "0.4 MPa" in checked_message(one, Units())
 
 
 def test_equally_good_thicknesses_are_those_within_the_tolerance(found):
