@@ -198,10 +198,16 @@ def _surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
     sides = np.stack([normal + g * tangential for g in (parts.friction, -parts.friction)])
     bound[:, :, inside - 1] = edge_uncertainty(sides[:, :, edge], bound[:, :, edge], _change(parts))
 
-    def joined(values: Array, parity: Array, keep: Callable[[int], NDArray[np.int_]]) -> _Joined:
+    def joined(values: Array, parity: Array, keep: Callable[[int], NDArray[np.int_]]) -> Curve:
         i, o = keep(inside), keep(eta.size)
         within = _spline(theta[i], values[:, i], parity)
-        return _Joined(a, within, _spline(eta[o], values[:, inside - 1 + o], None))
+        beyond = _spline(eta[o], values[:, inside - 1 + o], None)
+
+        def curve(r: Array) -> Array:
+            s = r / a
+            return np.where(s <= 1, within(np.arcsin(np.minimum(s, 1))), beyond(np.arccosh(np.maximum(s, 1))))
+
+        return curve
 
     def curves(keep: Callable[[int], NDArray[np.int_]]) -> tuple[Curve, Curve]:
         return joined(normal, PARITY, keep), joined(tangential, -PARITY, keep)
@@ -219,20 +225,6 @@ def _change(parts: Parts) -> Array | None:
 
     change = followed(parts.solution, at_edge)
     return None if change is None else change.T[None]
-
-
-@dataclass(frozen=True)
-class _Joined:
-    """Two splines that meet at r = a."""
-
-    a: float
-    within: Curve
-    beyond: Curve
-
-    def __call__(self, r: Array) -> Array:
-        s = r / self.a
-        within = self.within(np.arcsin(np.minimum(s, 1)))
-        return np.where(s <= 1, within, self.beyond(np.arccosh(np.maximum(s, 1))))
 
 
 def _spline(at: Array, values: Array, parity: Array | None) -> Curve:

@@ -1,6 +1,7 @@
 """Contour maps of sigma_xx, sigma_xz, von Mises in the x-z plane for a few thicknesses."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,6 @@ from matplotlib.ticker import MaxNLocator
 
 from verification.cases.unit_numbers import Units
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import QUANTITIES, von_mises
 from verification.sources.source_registry import METHODS, solvers
 from verification.study.friction_planes import XX, XZ, in_plane
@@ -35,12 +35,16 @@ def contour_figures(study: Study, curve: Curve, thicknesses: Sequence[float]) ->
     residual stress of the coating. Raises what it raises.
     """
     a_h, units = curve.a_h, study.units
-    solutions = [_solved(study, curve, h) for h in thicknesses]
+    E = min(study.moduli, key=lambda E: abs(E / study.substrate[0] - curve.ratio))
+    coatings = [(E, study.coating_nu, h * a_h) for h in thicknesses]
+    bare = replace(study.bare, friction=curve.friction)
+    numerics = study.numerics.get(METHODS[0], {}) | {"estimate_uncertainty": False}
+    solutions = [solvers()[METHODS[0]](replace(bare, coatings=(one,)), numerics) for one in coatings]
     radius = max(s.contact_radius for s in solutions) / a_h
     half, deep = WIDEST * radius, DEEPEST * radius
     x = np.linspace(-half, half, COLUMNS)
     depths = [_depths(h, deep) for h in thicknesses]
-    residual = study.residual[study.moduli.index(_modulus(study, curve))] if study.residual else 0.0
+    residual = study.residual[study.moduli.index(E)] if study.residual else 0.0
     fields = [
         [
             _fields(s, x * a_h, z * a_h, layer, 0.0 if layer else residual, units)
@@ -107,17 +111,6 @@ def _one(
             "",
             rows,
         )
-
-
-def _modulus(study: Study, curve: Curve) -> float:
-    return min(study.moduli, key=lambda E: abs(E / study.substrate[0] - curve.ratio))
-
-
-def _solved(study: Study, curve: Curve, h: float) -> Any:
-    coating = (_modulus(study, curve), study.coating_nu, h * curve.a_h)
-    problem = CoatedContact(study.radius, study.load, (coating,), study.substrate, curve.friction, study.ball)
-    numerics = study.numerics.get(METHODS[0], {}) | {"estimate_uncertainty": False}
-    return solvers()[METHODS[0]](problem, numerics)
 
 
 def _depths(h: float, deep: float) -> list[Array]:
