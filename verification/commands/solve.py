@@ -148,14 +148,11 @@ def solve(
         if strict:
             _print(case, first, apart, halved)
         _print_model(case, beyond, checked=second is not None)
-        print_out(_times(first, second, time.perf_counter() - begin))
+        elements = f", finite elements {second.seconds:.1f} s" if second else ""
+        total = time.perf_counter() - begin
+        print_out(f"time: semi-analytical {first.seconds:.1f} s{elements}; in all {total:.1f} s")
     agree = all(difference.within for difference in apart)
     return EXIT[Outcome.AGREES if agree else Outcome.DISAGREES]
-
-
-def _times(first: Answer, second: Answer | None, total: float) -> str:
-    elements = f", finite elements {second.seconds:.1f} s" if second else ""
-    return f"time: semi-analytical {first.seconds:.1f} s{elements}; in all {total:.1f} s"
 
 
 def _from_file(file: str, given: Sequence[Any]) -> Case:

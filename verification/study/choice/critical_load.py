@@ -147,13 +147,16 @@ def ramps(columns: Mapping[str, NDArray[Any]]) -> tuple[Ramp, ...]:
     keys = np.stack([columns[name] for name in ("modulus_ratio", "thickness", "friction")], axis=1)
     found = []
     for key in np.unique(keys[solved], axis=0):
+        ratio, thickness, friction = key.tolist()
         rows = np.flatnonzero(solved & (keys == key).all(axis=1))
         rows = rows[np.argsort(columns["load"][rows])]
         ramp = {name: column[rows] for name, column in columns.items()}
         if rows.size >= 4:
             found.append(
                 Ramp(
-                    *key.tolist(),
+                    ratio,
+                    thickness,
+                    friction,
                     residual=float(ramp["residual_stress"][0]),
                     load=ramp["load"],
                     p_h=ramp["p_h"],

@@ -140,11 +140,11 @@ def choice(judgements: Sequence[Judged], criteria: Criteria) -> Choice:
     ranges = members[0].admissible if members[0].limited else ()
     for j in members[1:]:
         ranges = _overlap(ranges, j.admissible)
-    ends = tuple(
-        tuple(None if at in (h[0], h[-1]) else _end(found, int(np.abs(h - at).argmin()), at) for at in pair)
-        for pair in ranges
-    )
-    return replace(found, even=even, ranges=ends)
+
+    def end(at: float) -> End | None:
+        return None if at in (h[0], h[-1]) else _end(found, int(np.abs(h - at).argmin()), at)
+
+    return replace(found, even=even, ranges=tuple((end(low), end(high)) for low, high in ranges))
 
 
 def _end(found: Choice, k: int, h: float | None = None) -> End:

@@ -9,15 +9,7 @@ from matplotlib.ticker import MaxNLocator
 from verification.page.page_parts import Cell, Part, Section, number, table_of
 from verification.study.choice.critical_load import Critical, critical, ramps
 from verification.study.choice.failure_criteria import MODES
-from verification.study.pages.study_assembly import (
-    Draw,
-    Written,
-    check_sections,
-    draw_sections,
-    failed_section,
-    inputs_section,
-    write_page,
-)
+from verification.study.pages.study_assembly import Draw, Written, common_sections, write_page
 from verification.study.pages.study_figures import (
     COLOURS,
     DASHES,
@@ -31,7 +23,6 @@ from verification.study.pages.study_figures import (
 from verification.study.pages.thickness_page import rounded
 from verification.study.study_plan import Study
 from verification.study.study_table import read_columns
-from verification.study.thickness_curves import differences
 
 
 def write_load_report(
@@ -56,17 +47,11 @@ def write_load_report(
             ("map", "Critical load against thickness", lambda: _maps(study, found)),
             ("ramp", "Load ramp", lambda: _tracks(study, found)),
         ]
-    drawings = draw_sections(draws, folder / "figures" / study.name, drawing)
     said = answers(study, found)
     failed = np.flatnonzero(columns["status"] != "solved")
     failures = sorted({f"h = {columns['thickness'][i]:.4g} m: {columns['failure'][i]}" for i in failed})
-    sections = [
-        Section("critical", "Critical loads", [Part(text) for text in said] + [_table(study, found)]),
-        inputs_section(study),
-        *drawings,
-        *check_sections(differences(columns)),
-        *failed_section(failures),
-    ]
+    first = Section("critical", "Critical loads", [Part(text) for text in said] + [_table(study, found)])
+    sections = [first, *common_sections(study, folder, draws, columns, failures, drawing)]
     summary = said[0] if said else f"No answer: no ramp of {study.title} has four solved loads."
     return write_page(table, study, folder, said, summary, sections, [], facts)
 

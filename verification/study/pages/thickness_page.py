@@ -15,15 +15,7 @@ from verification.page.source_labels import source_label
 from verification.study.choice.failure_criteria import MODES, Judged, judged
 from verification.study.choice.thickness_choice import DRAWN, Choice, End, Range, choice
 from verification.study.pages.contour_maps import contour_figures, nearest
-from verification.study.pages.study_assembly import (
-    Draw,
-    Written,
-    check_sections,
-    draw_sections,
-    failed_section,
-    inputs_section,
-    write_page,
-)
+from verification.study.pages.study_assembly import Draw, Written, common_sections, write_page
 from verification.study.pages.study_figures import (
     Drawn,
     contact_figure,
@@ -33,7 +25,7 @@ from verification.study.pages.study_figures import (
 )
 from verification.study.study_plan import Study
 from verification.study.study_table import read_columns
-from verification.study.thickness_curves import Curve, curves, differences
+from verification.study.thickness_curves import Curve, curves
 
 DIGITS = 2  # of a thickness, at most
 
@@ -205,15 +197,9 @@ def write_study_report(
             ("contours", "In the x-z plane", lambda: _maps(study, found, failures)),
             ("contact", "The contact against thickness", lambda: contact_figure(found, units)),
         ]
-    drawings = draw_sections(draws, folder / "figures" / study.name, drawing)
     said = answers(choices, units)
-    sections = [
-        _preference(study, choices, said),
-        inputs_section(study),
-        *drawings,
-        *check_sections(differences(columns)),
-        *failed_section(failures),
-    ]
+    first = _preference(study, choices, said)
+    sections = [first, *common_sections(study, folder, draws, columns, failures, drawing)]
     solved = sum(c.h.size for c in every)
     lost = sum(len(c.failures) for c in every)
     points = ("points", f"{solved} solved" + (f", {lost} could not be" if lost else ""))
