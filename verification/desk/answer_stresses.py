@@ -11,6 +11,7 @@ interface change near a free edge of the coating only, which is not part of this
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import accumulate
 
 import numpy as np
 
@@ -124,7 +125,7 @@ class _Layers:
         sublayers: tuple[int, ...],
     ) -> None:
         self.solution, self.problem, self.parts = solution, problem, Parts(solution, problem.friction)
-        self.bounds = (0, *(int(n) for n in np.cumsum(sublayers, dtype=int)))
+        self.bounds = (0, *accumulate(sublayers))
         self.residual = (*(residual or [0.0] * len(problem.coatings)), 0.0)
         h = problem.interfaces[self.bounds[1] - 1] if problem.coatings else float(solution.contact_radius)
         self.tops, self.bases = outer_planes(self.parts, problem.interfaces, h)
@@ -179,10 +180,8 @@ class _Layers:
         found = []
         for layer in layers:
             measure = self._total(plain, layer)
-            ends = (self.tops[layer], self.bases[layer])
-            found.append(
-                max((largest(one, measure, self.problem.friction) for one in ends), key=lambda at: at.value)
-            )
+            ends = [largest(p[layer], measure, self.problem.friction) for p in (self.tops, self.bases)]
+            found.append(max(ends, key=lambda at: at.value))
         best = int(np.argmax([at.value for at in found]))
         at = found[best]
         # Between two planes it may be larger, but not beyond the outer ones.

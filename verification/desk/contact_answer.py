@@ -9,13 +9,11 @@ import numpy as np
 
 from verification.desk.answer_stresses import Course, Extreme, stresses
 from verification.problem.coated_contact import FLAT, CoatedContact
-from verification.problem.quantity import QUANTITIES
+from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.source_registry import solvers
 
 # Measured on one core of 2.5 GHz, an elastic ball with two thin films within 5 %.
 BODY_SECONDS, FILM_SECONDS, THIN = 4.0, 8.0, 0.1
-NUMBERS = ("peak_pressure", "contact_radius", "approach")
-
 
 Names = Mapping[str, tuple[str, ...]]  # of the coatings of each body, see ``Case``
 
@@ -61,7 +59,7 @@ def answer(
     solution = solvers()[source](problem, numerics or {})
     numbers = {
         name: (QUANTITIES[name].value(solution, problem), QUANTITIES[name].uncertainty(solution, problem))
-        for name in NUMBERS
+        for name in SCALARS
     }
     found, drawn = stresses(solution, problem, residual, layers)
     return Answer(source, time.perf_counter() - begin, numbers, found, drawn)
@@ -95,7 +93,6 @@ def summary(problem: CoatedContact, found: Answer, names: Names) -> str:
     Where the largest tension is not that of a coating, the largest of the coatings follows; then the largest
     sigma_xx at the base of a coating, which cracks from there too.  names : of the coatings, see ``Case``.
     """
-
     a, sliding = found.numbers["contact_radius"][0], problem.friction > 0
     (largest, *_), coatings = _ranked(found, "sigma_1"), _ranked(found, "sigma_1", "coating")
     bases, (von_mises, *_) = _ranked(found, "sigma_xx", "base of"), _ranked(found, "von_mises")
