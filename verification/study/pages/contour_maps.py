@@ -41,9 +41,8 @@ def contour_figures(study: Study, curve: Curve, thicknesses: Sequence[float]) ->
     numerics = study.numerics.get(METHODS[0], {}) | {"estimate_uncertainty": False}
     solutions = [solvers()[METHODS[0]](replace(bare, coatings=(one,)), numerics) for one in coatings]
     radius = max(s.contact_radius for s in solutions) / a_h
-    half, deep = WIDEST * radius, DEEPEST * radius
-    x = np.linspace(-half, half, COLUMNS)
-    depths = [_depths(h, deep) for h in thicknesses]
+    x = np.linspace(-WIDEST * radius, WIDEST * radius, COLUMNS)
+    depths = [_depths(h, DEEPEST * radius) for h in thicknesses]
     residual = study.residual[study.moduli.index(E)] if study.residual else 0.0
     fields = [
         [
@@ -57,7 +56,7 @@ def contour_figures(study: Study, curve: Curve, thicknesses: Sequence[float]) ->
         low, high = _range([layer[column] for row in fields for layer in row])
         scales.append(np.asarray(MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)))
     return [
-        _one(curve, units, x, *one, scales, (half, deep))
+        _one(curve, units, x, *one, scales)
         for one in zip(thicknesses, solutions, depths, fields, strict=True)
     ]
 
@@ -71,7 +70,6 @@ def _one(
     levels_z: list[Array],
     field: list[tuple[Array, Array, Array]],
     scales: list[Array],
-    extent: tuple[float, float],
 ) -> Drawn:
     size = curve.a_h / units.metre
     with sheet(150, right=17) as figure:
@@ -87,8 +85,8 @@ def _one(
             axes.axhline(h * size, color="black", linewidth=0.9, linestyle=(0, (4, 2)))
             edge = solution.contact_radius / units.metre
             axes.plot([-edge, edge], [0, 0], color="black", linewidth=3, solid_capstyle="butt")
-            axes.set_xlim(-extent[0] * size, extent[0] * size)
-            axes.set_ylim(extent[1] * size, 0)
+            axes.set_xlim(x[0] * size, x[-1] * size)
+            axes.set_ylim(levels_z[-1][-1] * size, 0)
             axes.set_ylabel(f"z [{units.length}]")
             place = axes.get_position()
             bar = figure.colorbar(
@@ -100,9 +98,9 @@ def _one(
         panels[-1].set_xlabel(f"x [{units.length}], along sliding")
         over = panels[0].secondary_xaxis("top", functions=(lambda v: v / size, lambda v: v * size))
         over.set_xlabel("$x / a_h$")
-        rows = [["h / a_h", f"x [{units.length}]", f"z [{units.length}]", "layer"]]
-        rows[0] += [f"{name} [{units.stress}]" for name in ("sigma_xx", "sigma_xz", "von Mises")]
-        rows += _numbers(h, x * size, [z * size for z in levels_z], field)
+        heads = ["h / a_h", f"x [{units.length}]", f"z [{units.length}]", "layer"]
+        heads += [f"{name} [{units.stress}]" for name in ("sigma_xx", "sigma_xz", "von Mises")]
+        rows = [heads, *_numbers(h, x * size, [z * size for z in levels_z], field)]
         name = f"contours_{curve.ratio:.4g}_f{curve.friction:g}_h{h:.3g}".replace(".", "_")
         return drawn(
             figure,
