@@ -22,7 +22,7 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "verification" / "manual" / "source
 KEPT = Path(os.environ.get("COATCHECK_ENVIRONMENTS", ROOT / "build" / "environments"))
 LINE = re.compile(r"^(?:\| `|    |\$ )?((?:[^`|\n]*&& *)?(?:\.venv/bin/)?coatcheck [^`|\n]*)", re.MULTILINE)
 EXTRAS = re.compile(r"pip install .*?-e '?\.(?:\[([\w,]+)\])?'?")
-# What takes minutes is run in part; what waits for a person, a scheduler, or writes the baseline is not run.
+# What takes minutes is run in part; what waits for a person or writes the baseline is not run.
 QUICK = {
     r"run$": "run 01_uncoated_steel",
     r"run published$": "run ahlvin_ulery_1962",
@@ -33,7 +33,7 @@ QUICK = {
     r"(study \w+).*": r"\1 --help",
     r"completion .*": "completion bash",
 }
-NOT_RUN = ("--scheduler", "baseline update", "<")
+NOT_RUN = ("baseline update", "<")
 
 
 def commands() -> list[tuple[str, str]]:

@@ -1,14 +1,11 @@
 """Answers made up from Hertz's formulas, for tests of the study engine that shall solve nothing."""
 
-import time
 from collections.abc import Mapping
 from typing import Any
 
 from verification.sources.references.hertz import Hertz
-from verification.study.solve_cache import code_version
 
 FAILING = 7e-5  # m; a coating of this thickness has no solution here
-CRASHING = 9e-5  # m; this one takes its worker's task with it
 
 STUDY = """
 title = "Made up"
@@ -25,12 +22,9 @@ cross_check = 5
 """
 
 
-def made_up(request: Mapping[str, Any], crashing: float = CRASHING) -> dict[str, Any]:
-    """Hertz on the coating's material; slower for thin coatings, so that answers arrive out of order."""
+def made_up(request: Mapping[str, Any]) -> dict[str, Any]:
+    """Hertz on the coating's material."""
     E, nu, thickness = request["coating"]
-    time.sleep(2e-7 / thickness)
-    if thickness == crashing:
-        raise RuntimeError("the worker's own trouble")
     hertz = Hertz(request["radius"], request["load"], E, nu)
     rows = [
         {"friction": f, "status": "failed", "failure": "no such thickness"}
@@ -44,4 +38,4 @@ def made_up(request: Mapping[str, Any], crashing: float = CRASHING) -> dict[str,
         }
         for f in request["frictions"]
     ]
-    return {"rows": rows, "seconds": 0.0, "versions": {}, "code": code_version(request["source"])}
+    return {"rows": rows, "seconds": 0.0, "versions": {}}

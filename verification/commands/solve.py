@@ -1,10 +1,8 @@
 """coatcheck solve: the answer to one problem in MPa with places in um."""
 
 import math
-import threading
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from textwrap import wrap
@@ -13,7 +11,6 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import Progress
 from rich.table import Column, Table
 from threadpoolctl import threadpool_limits
 
@@ -106,7 +103,13 @@ def solve(
         bar.update(task, advance=1, description="half of the sub-layers")
         halved = _halved(case, first)
         bar.update(task, advance=bool(case.layers))
-    second = _checked(case, bars(), silent=as_json) if check else None
+    second = None
+    if check:
+        if not as_json:
+            print_error(f"finite elements: about {usual_seconds(case.problem):.0f} s of processor time")
+        with bars() as bar:
+            bar.add_task("finite elements", total=1)
+            second = _answer(case, SECOND)
     # Before the solve the peak pressure was that of Hertz.
     told = any(line.startswith("peak pressure") for line in case.warnings)
     late = () if told else beyond_limits(first.numbers["peak_pressure"][0], case.limits)
@@ -145,42 +148,11 @@ def solve(
         if strict:
             _print(case, first, apart, halved)
         _print_model(case, beyond, checked=second is not None)
-        print_out(_times(first, second, time.perf_counter() - begin))
+        elements = f", finite elements {second.seconds:.1f} s" if second else ""
+        total = time.perf_counter() - begin
+        print_out(f"time: semi-analytical {first.seconds:.1f} s{elements}; in all {total:.1f} s")
     agree = all(difference.within for difference in apart)
     return EXIT[Outcome.AGREES if agree else Outcome.DISAGREES]
-
-
-def _times(first: Answer, second: Answer | None, total: float) -> str:
-    elements = f", finite elements {second.seconds:.1f} s" if second else ""
-    return f"time: semi-analytical {first.seconds:.1f} s{elements}; in all {total:.1f} s"
-
-
-def _checked(case: Case, bar: Progress, *, silent: bool) -> Answer:
-    """The answer by finite elements, its usual time announced before, with a bar of seconds."""
-    expected = usual_seconds(case.problem)
-    if not silent:
-        print_error(f"finite elements: about {expected:.0f} s of processor time")
-    with bar, _ticking(bar, expected):
-        return _answer(case, SECOND)
-
-
-@contextmanager
-def _ticking(bar: Progress, seconds: float) -> Iterator[None]:
-    """A task of ``bar`` that counts the seconds, up to those expected."""
-    task, stop = bar.add_task("finite elements [s]", total=math.ceil(seconds)), threading.Event()
-
-    def tick() -> None:
-        begin = time.perf_counter()
-        while not stop.wait(1.0):
-            bar.update(task, completed=min(int(time.perf_counter() - begin), math.ceil(seconds)))
-
-    thread = threading.Thread(target=tick, daemon=True)
-    thread.start()
-    try:
-        yield
-    finally:
-        stop.set()
-        thread.join()
 
 
 def _from_file(file: str, given: Sequence[Any]) -> Case:

@@ -1,4 +1,4 @@
-"""coatcheck study: parameter studies on Dask."""
+"""coatcheck study: parameter studies."""
 
 import os
 import sys
@@ -6,9 +6,8 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
-from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from cyclopts import Parameter
 from rich.console import Console
@@ -32,10 +31,6 @@ from verification.running.provenance import commit, cores, hardware
 from verification.sources.source_registry import SOURCES
 from verification.study.study_plan import Study, read_study_file, shipped_studies
 
-if TYPE_CHECKING:
-    from verification.study.pages.thickness_page import Written
-    from verification.study.study_engine import Outcome as StudyOutcome
-
 LABELS = {name: source.label for name, source in SOURCES.items()}
 FIGURE_GROUPS = 5
 BUSY = 1.5  # processes a core, beyond which the forecast states the time beside them
@@ -49,8 +44,6 @@ class Options:
     output: Output = Path("reports/study")
     """Directory of the table, PLAN.parquet, and of the cache."""
     jobs: Jobs = None
-    scheduler: str | None = None
-    """Address of a Dask scheduler, tcp://HOST:PORT, whose workers solve in place of this machine."""
     limit: int | None = None
     """Only the first so many points."""
     cross_check: bool = True
@@ -114,11 +107,12 @@ def init(kind: Literal["thickness", "load", "stiffness"], file: Path | None = No
 
 
 def _study(plan: str, options: Options, *, loads: bool) -> int:
-    jobs, limit, output = options.jobs, options.limit, options.output
-    silent = options.quiet or options.as_json
-    if (jobs is not None and jobs < 1) or (limit is not None and limit < 1):
+    limit, output, silent = options.limit, options.output, options.quiet or options.as_json
+    jobs = cores() if options.jobs is None else options.jobs
+    if jobs < 1 or (limit is not None and limit < 1):
         raise CommandError(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
-    chosen = _choose(plan)
+    shipped = shipped_studies()
+    chosen = read_study_file(path_of(plan, shipped, f"study ({', '.join(shipped)})"))
     if loads != (chosen.loads is not None):
         what = "sweeps the load; use coatcheck study load" if chosen.loads else "has no sweep.load"
         raise CommandError(f"{plan}: this study {what}")
@@ -130,33 +124,40 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
     if chosen.cross_check:
         require_gmsh()
 
-    from verification.study.dask_cluster import connected
+    from verification.study.pages.load_page import write_load_report
+    from verification.study.pages.thickness_page import write_study_report
     from verification.study.study_engine import run_study, table_path
 
-    cluster = partial(connected, options.scheduler, jobs)
+    write_report = write_load_report if loads else write_study_report
     begin = time.perf_counter()
-    written = None
     try:
         if not silent:
             sys.stderr.write(f"coatcheck: {_forecast(chosen, output, jobs, limit)}\n")
         with _bars(silent) as (report, drawing):
-            came = run_study(chosen, output, cluster, limit=limit, report=report)
-            written = _page(chosen, came, time.perf_counter() - begin, options.figures, drawing)
+            came = run_study(chosen, output, jobs, limit=limit, report=report)
+            facts = [
+                ("solves", f"{came.done} done, {came.kept} from the cache"),
+                ("duration", f"{time.perf_counter() - begin:.0f} s"),
+                ("commit", commit() or "not in a repository"),
+                ("machine", hardware()),
+            ]
+            written = write_report(
+                came.table, chosen, output, facts, figures=options.figures, drawing=drawing
+            )
     except KeyboardInterrupt:
         sys.stderr.write(
             f"\ncoatcheck: stopped; solved points are in {table_path(output, chosen)}, "
             "the same command resumes from there\n"
         )
         return STOPPED
+    seconds = time.perf_counter() - begin
     for message in came.damaged:
         print_error(f"{message.split(';')[0]}; solved again")
     if options.as_json:
-        content = asdict(came) | {"table": str(came.table), "lost": len(came.lost)}
-        content["warnings"] = chosen.warnings
-        content |= {"page": str(written.page), "answer": written.answer}
+        content = asdict(came) | {"table": str(came.table), "lost": len(came.lost), "seconds": seconds}
+        content |= {"warnings": chosen.warnings, "page": str(written.page), "answer": written.answer}
         print_json(content)
     elif not options.quiet:
-        seconds = time.perf_counter() - begin
         print_out(
             *(f"[bold]{escape(line)}[/]" for line in written.answer),
             f"{came.points} points in {seconds:.0f} s: {came.done} solves done, {came.kept} found in the "
@@ -165,52 +166,24 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
     return EXIT[Outcome.NO_RESULT] if came.failed else EXIT[Outcome.AGREES]
 
 
-def _forecast(chosen: Study, output: Path, jobs: int | None, limit: int | None) -> str:
+def _forecast(chosen: Study, output: Path, jobs: int, limit: int | None) -> str:
     """The stages of the study with the time they take, before the first of them starts."""
     from verification.study.study_engine import forecast
 
-    processes = jobs or cores()
-    parts, seconds = [], 0.0
-    for source, expected in forecast(chosen, output, limit).items():
-        seconds += expected.missing * expected.seconds / processes
-        stored = expected.solves - expected.missing
-        parts.append(
-            f"{expected.solves} {LABELS[source]}" + (f" ({stored} of them stored)" if stored else "")
-        )
+    every, missing, seconds = forecast(chosen, output, limit)
+    parts = []
+    for source, solves in every.items():
+        stored = solves - missing[source]
+        parts.append(f"{solves} {LABELS[source]}" + (f" ({stored} of them stored)" if stored else ""))
     what = f"{chosen.title}: solves: {', '.join(parts)}, then figures"
     # each process gets its share of the cores beside what else runs now
-    shares = (os.getloadavg()[0] + processes) / cores()
-    beside = f", {_rounded(seconds * shares)} beside the present load" if shares > BUSY else ""
-    return f"{what}; about {_rounded(seconds)} on {processes} idle cores{beside}"
+    shares = (os.getloadavg()[0] + jobs) / cores()
+    beside = f", {_rounded(seconds / jobs * shares)} beside the present load" if shares > BUSY else ""
+    return f"{what}; about {_rounded(seconds / jobs)} on {jobs} idle cores{beside}"
 
 
 def _rounded(seconds: float) -> str:
     return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
-
-
-def _page(
-    chosen: Study,
-    came: "StudyOutcome",
-    seconds: float,
-    figures: bool,
-    drawing: Callable[[str], None],
-) -> "Written":
-    from verification.study.pages.load_page import write_load_report
-    from verification.study.pages.thickness_page import write_study_report
-
-    facts = [
-        ("solves", f"{came.done} done, {came.kept} from the cache"),
-        ("duration", f"{seconds:.0f} s"),
-        ("commit", commit() or "not in a repository"),
-        ("machine", hardware()),
-    ]
-    write = write_study_report if chosen.loads is None else write_load_report
-    return write(came.table, chosen, came.table.parent, facts, figures=figures, drawing=drawing)
-
-
-def _choose(plan: str) -> Study:
-    shipped = shipped_studies()
-    return read_study_file(path_of(plan, shipped, f"study ({', '.join(shipped)})"))
 
 
 @contextmanager

@@ -1,7 +1,7 @@
 """Figure of one answer: stresses along x in MPa over um, on the surface, at each interface."""
 
 import io
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,51 +15,36 @@ from verification.desk.contact_answer import Answer, Names, with_name
 from verification.desk.section_field import Section
 from verification.problem.coated_contact import FLAT
 from verification.running.checked_files import write_atomically
-
-__all__ = ["COLOURS", "FORMATS", "draw", "save", "write"]
+from verification.study.pages.study_figures import COLOURS
 
 FORMATS = (".png", ".pdf", ".svg")
-# Okabe and Ito's colours, distinct for the colour-blind.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
 STYLES = ("-", "--", "-.", ":", (0, (6, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 3)))
 _SETTINGS: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "savefig.facecolor": "white"}
 
 
-def write(
-    answer: Answer, title: str, path: Path, below: Section | None = None, names: Names | None = None
-) -> None:
-    """Write the figure; see ``save``, ``draw``."""
-    save(lambda: draw(answer, title, below, names), path)
+def write(answer: Answer, title: str, path: Path, below: Section, names: Names) -> None:
+    """Write the figure as PNG, PDF or SVG, by the suffix of ``path``; whole or not at all.
 
-
-def save(drawn: Callable[[], Figure], path: Path) -> None:
-    """Write a figure as PNG, PDF or SVG, by the suffix of ``path``; whole or not at all.
-
-    Raises ValueError for another suffix.
+    below : the section on top.   names : of the coatings, see ``Case``.
     """
-    suffix = path.suffix.lower()
-    if suffix not in FORMATS:
-        raise ValueError(f"{path}: the name has to end in {', '.join(FORMATS)}")
     content = io.BytesIO()
     with mpl.rc_context(_SETTINGS):
-        drawn().savefig(content, format=suffix[1:], dpi=200)
+        _drawn(answer, title, below, names).savefig(content, format=path.suffix.lower()[1:], dpi=200)
     write_atomically(path, content.getvalue())
 
 
-def draw(answer: Answer, title: str, below: Section | None = None, names: Names | None = None) -> Figure:
+def _drawn(answer: Answer, title: str, below: Section, names: Names) -> Figure:
     """Stresses along x: sigma_xx with its largest values as dots; sigma_xz, sigma_zz at each interface.
 
-    For an uncoated body those of the surface, sigma_zz = -p.   below : the section on top, if given.
-    names : of the coatings, see ``Case``.
+    For an uncoated body those of the surface, sigma_zz = -p.
     """
-    figure = Figure(figsize=(8.5, 9.0 if below else 6.4), layout="constrained")
-    panels = figure.subplots(3 if below else 2, 2, sharex="col", width_ratios=(3, 1))
-    upper, lower = panels[-2:, 0]
-    for beside in panels[-2:, 1]:  # room for the legends
+    figure = Figure(figsize=(8.5, 9.0), layout="constrained")
+    panels = figure.subplots(3, 2, sharex="col", width_ratios=(3, 1))
+    upper, lower = panels[1:, 0]
+    for beside in panels[1:, 1]:  # room for the legends
         beside.set_visible(False)
     a = answer.numbers["contact_radius"][0] * 1e6
-    if below:
-        _section(figure, panels[0, 0], panels[0, 1], below, a)
+    _section(figure, panels[0, 0], panels[0, 1], below, a)
     for course, colour, style in _cycle(answer.courses):
         upper.plot(
             course.x * 1e6, course.stress[0] / 1e6, linestyle=style, color=colour, label=_name(course, names)
@@ -130,7 +115,7 @@ def _section(figure: Figure, axes: Axes, beside: Axes, below: Section, a: float)
     figure.colorbar(field, ax=beside, label="$σ_1$ [MPa]", fraction=0.1)
 
 
-def _name(course: Course, names: Names | None) -> str:
+def _name(course: Course, names: Names) -> str:
     where = with_name(course.body, course.where, names)
     return where if course.body == FLAT else f"{course.body}, {where}"
 

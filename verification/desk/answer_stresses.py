@@ -11,6 +11,7 @@ interface change near a free edge of the coating only, which is not part of this
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from itertools import accumulate
 
 import numpy as np
 
@@ -22,19 +23,17 @@ from verification.sampling.largest_tension import Search
 from verification.study.friction_planes import (
     XX,
     XZ,
+    YY,
     ZZ,
     Parts,
     Plane,
-    crowded,
-    plane,
-    planes_between,
+    inner_planes,
+    outer_planes,
     stress_at,
-    surface,
 )
 from verification.study.largest_stresses import (
     Located,
     Measure,
-    depths,
     inside,
     largest,
     propagated,
@@ -98,67 +97,46 @@ def stresses(
     for body in problem.bodies:
         seen, turned = problem.seen_from(body), -1.0 if body == BALL else 1.0
         sublayers = (layers or {}).get(body) or (1,) * len(seen.coatings)
-        parts = _Layers.of(on_body(solution, body), seen, (residual or {}).get(body, ()), sublayers)
-        for quantity, where, at in parts.extremes():
+        layered = _Layers(on_body(solution, body), seen, (residual or {}).get(body, ()), sublayers)
+        for quantity, where, at in layered.extremes():
             place = turned * at.x + 0.0  # no -0
             found.append(Extreme(body, quantity, where, at.value, at.uncertainty, place, at.z))
         x = np.linspace(-REACH, REACH, POINTS) * float(solution.contact_radius)
-        for where, line in parts.lines():
-            stress = line(turned * x, seen.friction) + parts.added(line.layer, 1)
+        for where, line in layered.lines():
+            stress = line(turned * x, seen.friction)
+            stress[[XX, YY]] += layered.residual[line.layer]
             stress[XZ] *= turned
             drawn.append(Course(body, where, x, stress))
     return tuple(found), tuple(drawn)
 
 
-def _value(at: Located) -> float:
-    return at.value
-
-
-@dataclass(frozen=True, eq=False)
 class _Layers:
     """One body: planes on the upper side of each layer, ``tops``, the lower of each coating's, ``bases``.
 
     bounds : number of the layer with which each coating begins, then that of the substrate.
+    residual : stress [Pa] of each layer, the substrate included.
     """
 
-    solution: Solution
-    problem: CoatedContact
-    parts: Parts
-    tops: list[Plane]
-    bases: list[Plane]
-    residual: tuple[float, ...]
-    bounds: tuple[int, ...]
-
-    @classmethod
-    def of(
-        cls,
+    def __init__(
+        self,
         solution: Solution,
         problem: CoatedContact,
         residual: tuple[float, ...],
         sublayers: tuple[int, ...],
-    ) -> "_Layers":
-        parts, a = Parts(solution, problem.friction), float(solution.contact_radius)
-        bounds = (0, *(int(n) for n in np.cumsum(sublayers, dtype=int)))
-        h = problem.interfaces[bounds[1] - 1] if problem.coatings else a
-        tops, bases = [surface(parts, a, h, min(a + 2 * h, 7 * a))], []
-        for k, z in enumerate(problem.interfaces):
-            knots = crowded(a, 0.5 * min(a, z), a + 2.5 * z)
-            bases.append(plane(parts, knots, z, k))
-            tops.append(plane(parts, knots, z, k + 1))
-        return cls(solution, problem, parts, tops, bases, residual, bounds)
-
-    def added(self, layer: int, dimensions: int) -> Array:
-        """xx, yy, zz, xz [Pa] of the residual stress of a layer, (4,) + (1,) * ``dimensions``."""
-        stress = self.residual[layer] if layer < len(self.residual) else 0.0
-        return (stress * np.array([1.0, 1.0, 0.0, 0.0])).reshape(4, *[1] * dimensions)
+    ) -> None:
+        self.solution, self.problem, self.parts = solution, problem, Parts(solution, problem.friction)
+        self.bounds = (0, *accumulate(sublayers))
+        self.residual = (*(residual or [0.0] * len(problem.coatings)), 0.0)
+        h = problem.interfaces[self.bounds[1] - 1] if problem.coatings else float(solution.contact_radius)
+        self.tops, self.bases = outer_planes(self.parts, problem.interfaces, h)
 
     def _total(self, measure: Measure, layer: int) -> Measure:
         """``measure`` of a stress with the residual stress of its layer."""
-        return with_residual(measure, self.residual[layer] if layer < len(self.residual) else 0.0)
+        return with_residual(measure, self.residual[layer])
 
     def _shown(self, found: Located, layer: int) -> Located:
         """As ``tensile`` in a layer without residual stress; with one as it is, with its sign."""
-        return found if self.added(layer, 0).any() else tensile(found)
+        return found if self.residual[layer] else tensile(found)
 
     def name(self, number: int) -> str:
         return "substrate" if number == len(self.bounds) - 1 else f"coating {number + 1}"
@@ -186,7 +164,10 @@ class _Layers:
                 for quantity, plain in measures.items():
                     yield quantity, self.name(number), self._graded(plain, range(layer, below))
                 continue
-            planes, knots = self._planes(layer)
+            # They only locate: the uncertainty is evaluated at the place found.
+            unstated = replace(self.parts, stated=False)
+            between, knots = inner_planes(unstated, self.problem.interfaces, layer)
+            planes = [self.tops[layer], *between, *self.bases[layer : layer + 1]]
             for quantity, plain in measures.items():
                 measure = self._total(plain, layer)
                 ends = [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
@@ -199,8 +180,8 @@ class _Layers:
         found = []
         for layer in layers:
             measure = self._total(plain, layer)
-            ends = (self.tops[layer], self.bases[layer])
-            found.append(max((largest(one, measure, self.problem.friction) for one in ends), key=_value))
+            ends = [largest(p[layer], measure, self.problem.friction) for p in (self.tops, self.bases)]
+            found.append(max(ends, key=lambda at: at.value))
         best = int(np.argmax([at.value for at in found]))
         at = found[best]
         # Between two planes it may be larger, but not beyond the outer ones.
@@ -240,20 +221,4 @@ class _Layers:
         U[search.edges] = np.nan if around is None else around[0, 0]
         found = search.largest(value, None if around is None else U)
         spread = float("nan") if found.uncertainty is None else found.uncertainty
-        total = found.value + float(self.added(0, 0)[XX])
-        return self._shown(Located(total, spread, found.place, 0.0), 0)
-
-    def _planes(self, layer: int) -> tuple[list[Plane], Array]:
-        """Planes of a layer from its upper side down, with the radii of those between."""
-        a, bounds = float(self.solution.contact_radius), (0.0, *self.problem.interfaces)
-        top, coating = bounds[layer], layer < len(self.bases)
-        h = bounds[layer + 1] if coating else (top or a)
-        knots = crowded(a, 0.5 * min(a, h), 0.5 * (a + h))
-        if coating:
-            between = depths(top, h, 0.5 * a)[1:-1]
-        else:
-            between = depths(top, 1.5 * top + 2 * a, 0.5 * max(a / 2, top))[1:]
-        # They only locate: the uncertainty is evaluated at the place found.
-        parts = replace(self.parts, stated=False)
-        planes = planes_between(parts, knots, between, layer)
-        return [self.tops[layer], *planes, *([self.bases[layer]] if coating else [])], knots
+        return self._shown(Located(found.value + self.residual[0], spread, found.place, 0.0), 0)

@@ -10,8 +10,6 @@ import json
 import re
 from collections.abc import Sequence
 
-__all__ = ["case_text"]
-
 _SIZE = re.compile(r"(d|D|diameter|r|R|radius)\s*=?\s*([\d.+-].*)")
 # words with a letter in each, before a number: DLC, 100Cr6, a-C:H, tool steel
 _NAMED = re.compile(r"\s*((?:(?=[\w.:/-]*[^\W\d_])[\w.:/-]+\s+)+)(?=[\d.+-])")

@@ -9,13 +9,11 @@ import numpy as np
 
 from verification.desk.answer_stresses import Course, Extreme, stresses
 from verification.problem.coated_contact import FLAT, CoatedContact
-from verification.problem.quantity import QUANTITIES
-from verification.sources.source_registry import SOURCES
+from verification.problem.quantity import QUANTITIES, SCALARS
+from verification.sources.source_registry import solvers
 
 # Measured on one core of 2.5 GHz, an elastic ball with two thin films within 5 %.
 BODY_SECONDS, FILM_SECONDS, THIN = 4.0, 8.0, 0.1
-NUMBERS = ("peak_pressure", "contact_radius", "approach")
-
 
 Names = Mapping[str, tuple[str, ...]]  # of the coatings of each body, see ``Case``
 
@@ -58,13 +56,10 @@ def answer(
     Raises what the source raises.
     """
     begin = time.perf_counter()
-    solve = SOURCES[source].solve
-    if solve is None:
-        raise ValueError(f"source = {source!r}; it solves nothing")
-    solution = solve(problem, numerics or {})
+    solution = solvers()[source](problem, numerics or {})
     numbers = {
         name: (QUANTITIES[name].value(solution, problem), QUANTITIES[name].uncertainty(solution, problem))
-        for name in NUMBERS
+        for name in SCALARS
     }
     found, drawn = stresses(solution, problem, residual, layers)
     return Answer(source, time.perf_counter() - begin, numbers, found, drawn)
@@ -92,21 +87,15 @@ def usual_seconds(problem: CoatedContact) -> float:
 ON_AXIS = 5e-3  # of a place from the axis, over a
 
 
-def governing(found: Answer) -> Extreme | None:
-    """The largest first principal stress of both bodies."""
-    return _largest(found, "sigma_1")
-
-
-def summary(problem: CoatedContact, found: Answer, names: Names | None = None) -> str:
+def summary(problem: CoatedContact, found: Answer, names: Names) -> str:
     """Where both bodies are pulled and yield the most, and the interfaces are sheared; three digits in MPa.
 
     Where the largest tension is not that of a coating, the largest of the coatings follows; then the largest
     sigma_xx at the base of a coating, which cracks from there too.  names : of the coatings, see ``Case``.
     """
-
     a, sliding = found.numbers["contact_radius"][0], problem.friction > 0
-    largest, coating = governing(found), _largest(found, "sigma_1", "coating")
-    base, von_mises = _largest(found, "sigma_xx", "base of"), _largest(found, "von_mises")
+    (largest, *_), coatings = _ranked(found, "sigma_1"), _ranked(found, "sigma_1", "coating")
+    bases, (von_mises, *_) = _ranked(found, "sigma_xx", "base of"), _ranked(found, "von_mises")
 
     def name(at: Extreme) -> str:
         where = "the substrate" if at.where == "substrate" else with_name(at.body, at.where, names)
@@ -116,23 +105,20 @@ def summary(problem: CoatedContact, found: Answer, names: Names | None = None) -
         return f"{where} of the {at.body}" if coated else f"the {at.body}"
 
     parts = ["No tension"]
-    if largest and largest.value > 0:
+    if largest.value > 0:
         parts = [f"Largest tension {_mpa(largest)} in {name(largest)}, {_place(largest, a, sliding=sliding)}"]
-        if coating and coating is not largest and coating.value > 0:
-            parts.append(
-                f"of the coatings {_mpa(coating)} in {name(coating)}, {_place(coating, a, sliding=sliding)}"
-            )
-    if base and base.value > 0:
-        parts.append(f"{_mpa(base)} at the {name(base)}")
+    for at in coatings[:1]:
+        if at is not largest and at.value > 0:
+            parts.append(f"of the coatings {_mpa(at)} in {name(at)}, {_place(at, a, sliding=sliding)}")
+    parts += [f"{_mpa(at)} at the {name(at)}" for at in bases[:1] if at.value > 0]
     parts += [f"{name(at)} sheared by {_mpa(at)}" for at in found.extremes if at.quantity == "|sigma_xz|"]
-    if von_mises:
-        parts.append(f"von Mises stress up to {_mpa(von_mises)} in {name(von_mises)}")
+    parts.append(f"von Mises stress up to {_mpa(von_mises)} in {name(von_mises)}")
     return f"{'; '.join(parts)}."
 
 
-def with_name(body: str, where: str, names: Names | None) -> str:
+def with_name(body: str, where: str, names: Names) -> str:
     """A place with the name of its coating: "base of coating 1 (DLC)"."""
-    for number, given in enumerate((names or {}).get(body, ())[:-1], start=1):
+    for number, given in enumerate(names.get(body, ())[:-1], start=1):
         if given and where.endswith(f"coating {number}"):
             return f"{where} ({given})"
     return where
@@ -156,9 +142,10 @@ def agreement(first: Answer, apart: tuple[Difference, ...]) -> str:
     )
 
 
-def _largest(found: Answer, quantity: str, where: str = "") -> Extreme | None:
-    those = (at for at in found.extremes if at.quantity == quantity and at.where.startswith(where))
-    return max(those, key=lambda at: at.value, default=None)
+def _ranked(found: Answer, quantity: str, where: str = "") -> list[Extreme]:
+    """The extremes of ``quantity`` at places that begin with ``where``, the largest first."""
+    those = [at for at in found.extremes if at.quantity == quantity and at.where.startswith(where)]
+    return sorted(those, key=lambda at: -at.value)
 
 
 def _mpa(at: Extreme) -> str:

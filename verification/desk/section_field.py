@@ -9,7 +9,8 @@ import numpy as np
 from verification.desk.answer_stresses import first_principal
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import FLAT, CoatedContact
-from verification.sources.source_registry import METHODS, SOURCES
+from verification.sources.source_registry import METHODS, solvers
+from verification.study.friction_planes import in_plane
 
 WIDTH, BELOW, COLUMNS, ROWS = 2.0, 0.5, 161, 24  # extents over a; points along x, in depth of a layer
 
@@ -23,28 +24,26 @@ class Section:
     stress: tuple[Array, ...]
 
 
-def section(problem: CoatedContact, residual: Mapping[str, tuple[float, ...]] | None = None) -> Section:
+def section(problem: CoatedContact, residual: Mapping[str, tuple[float, ...]]) -> Section:
     """The section from the surface to half a contact radius below the deepest interface in sight.
 
     Solved by the semi-analytical method. Raises what it raises.
     """
-    solve = SOURCES[METHODS[0]].solve
-    assert solve is not None
-    solution = solve(problem, {"estimate_uncertainty": False})
+    solution = solvers()[METHODS[0]](problem, {"estimate_uncertainty": False})
     a = float(solution.contact_radius)
     x = WIDTH * a * np.linspace(-1, 1, COLUMNS)
     # A film is seen by itself: the view is no deeper than three times the stack.
     stack = problem.interfaces[-1] if problem.coatings else 0.0
     deepest = min(max(3 * stack, 0.02 * a), stack + BELOW * a) if stack else BELOW * a
     bounds = [0.0, *(z for z in problem.interfaces if z < deepest), deepest]
+    added = (*residual.get(FLAT, [0.0] * len(problem.coatings)), 0.0)
     depths, found = [], []
     for layer, (top, bottom) in enumerate(pairwise(bounds)):
         z = np.linspace(top, bottom, ROWS)
         points = np.broadcast_arrays(x[None, :], z[:, None])
         full = solution.stress(points[0].ravel(), 0.0, points[1].ravel(), layer=layer)
-        s = np.stack([full[0, 0], full[1, 1], full[2, 2], full[0, 2]]).reshape(4, ROWS, COLUMNS)
-        added = (residual or {}).get(FLAT, ())
-        s[:2] += added[layer] if layer < len(added) else 0.0
+        s = in_plane(full).reshape(4, ROWS, COLUMNS)
+        s[:2] += added[layer]
         depths.append(z)
         found.append(first_principal(s))
     return Section(x, tuple(depths), tuple(found))

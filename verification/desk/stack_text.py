@@ -1,6 +1,6 @@
 """A contact in words: the stack in one line, each body and coating in a line of its own."""
 
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from verification.cases.case_file import Case
 from verification.cases.random_problems import (
@@ -91,8 +91,7 @@ def outside_verified(case: Case) -> str:
 def _films(problem: CoatedContact) -> bool:
     """Whether there is a film as thin as those of the random problems of films, alone or below another."""
     thin = any(h < THICKNESS[0] * problem.a_h for *_, h in problem.coatings)
-    of_ball = 0 if problem.ball is None else len(problem.ball[2])
-    return thin and 1 <= len(problem.coatings) <= MOST_FILMS and not of_ball
+    return thin and len(problem.coatings) <= MOST_FILMS and not (problem.ball and problem.ball[2])
 
 
 def _between(bounds: tuple[float, float]) -> str:
@@ -103,9 +102,7 @@ def _coatings(
     seen: CoatedContact, layers: tuple[int, ...] | None
 ) -> list[tuple[tuple[float, float, float], ...]]:
     """The sub-layers of each coating."""
-    ends = [0]
-    for n in layers or (1,) * len(seen.coatings):
-        ends.append(ends[-1] + n)
+    ends = accumulate(layers or (1,) * len(seen.coatings), initial=0)
     return [seen.coatings[begin:end] for begin, end in pairwise(ends)]
 
 

@@ -11,7 +11,7 @@ smooth outside r = a and has the root of the pressure inside; sigma_t is smooth 
 Splines on either side of it, smooth up to the edge, meet at the solution's own value there.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -22,6 +22,7 @@ from scipy.interpolate import make_interp_spline
 from verification.judging.invariants.companion_uncertainty import followed
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import Solution, stress_with_uncertainty
+from verification.problem.quantity import IN_PLANE
 from verification.sampling.largest_tension import around_edge, edge_uncertainty
 
 Curve = Callable[[Array], Array]
@@ -55,7 +56,7 @@ class Parts:
             full, U = stress_with_uncertainty(self.solution, x, 0.0, z, layer=layer)
         else:
             full, U = self.solution.stress(x, 0.0, z, layer=layer), None
-        sigma, bound = _components(full), _components(np.full_like(full, np.nan) if U is None else U)
+        sigma, bound = in_plane(full), in_plane(np.full_like(full, np.nan) if U is None else U)
         if not self.friction:
             return sigma[:, 0], np.zeros_like(sigma[:, 0]), np.stack([bound[:, 0]] * 2)
         right, left = sigma[:, 0], sigma[:, 1] * PARITY.reshape(4, *[1] * r.ndim)
@@ -70,8 +71,9 @@ class Parts:
         return here * bound[0] + np.abs(1 - here) * bound[1]
 
 
-def _components(sigma: Array) -> Array:
-    return np.stack([sigma[0, 0], sigma[1, 1], sigma[2, 2], sigma[0, 2]])
+def in_plane(sigma: Array) -> Array:
+    """xx, yy, zz, xz, (4, ...), of a stress tensor, (3, 3, ...)."""
+    return np.stack([sigma[component] for component in IN_PLANE.values()])
 
 
 @dataclass(frozen=True)
@@ -120,7 +122,34 @@ def stress_at(parts: Parts, x: Array, z: Array, layer: int, friction: float) -> 
     return stress, parts.uncertainty(np.where(x < 0, bound[::-1], bound), friction)
 
 
-def crowded(a: float, width: float, reach: float) -> Array:
+def outer_planes(parts: Parts, interfaces: Sequence[float], h: float) -> tuple[list[Plane], list[Plane]]:
+    """The planes on the upper side of each layer, and those on the lower side of each coating.
+
+    interfaces : depths [m], from the surface down.   h : thickness of the first coating, a of a bare body.
+    """
+    a = float(parts.solution.contact_radius)
+    tops, bases = [_surface(parts, a, h, min(a + 2 * h, 7 * a))], []
+    for k, z in enumerate(interfaces):
+        knots = _crowded(a, 0.5 * min(a, z), a + 2.5 * z)
+        bases += _planes(parts, knots, np.array([z]), k)
+        tops += _planes(parts, knots, np.array([z]), k + 1)
+    return tops, bases
+
+
+def inner_planes(parts: Parts, interfaces: Sequence[float], layer: int) -> tuple[list[Plane], Array]:
+    """The planes below the top of ``layer`` and above the base of a coating, with their knots."""
+    a, top = float(parts.solution.contact_radius), (0.0, *interfaces)[layer]
+    if layer < len(interfaces):
+        h = interfaces[layer]
+        depths = _depths(top, h, 0.5 * a)[1:-1]
+    else:
+        h = top or a
+        depths = _depths(top, 1.5 * top + 2 * a, 0.5 * max(a / 2, top))[1:]
+    knots = _crowded(a, 0.5 * min(a, h), 0.5 * (a + h))
+    return _planes(parts, knots, depths, layer), knots
+
+
+def _crowded(a: float, width: float, reach: float) -> Array:
     """Radii [m] from 0 to a + ``reach`` as a sinh, densest at r = a, ``width``/6 apart there."""
     low, high = np.arcsinh(-a / width), np.arcsinh(reach / width)
     count = max(LEAST, int(np.ceil((high - low) / 0.16)) + 1)
@@ -129,13 +158,16 @@ def crowded(a: float, width: float, reach: float) -> Array:
     return r
 
 
-def plane(parts: Parts, knots: Array, z: float, layer: int) -> Plane:
-    """The plane at depth ``z`` > 0 of ``layer``, sampled at ``knots``."""
-    return planes_between(parts, knots, np.array([z]), layer)[0]
+def _depths(top: float, bottom: float, width: float) -> Array:
+    """Depths from ``top`` to ``bottom``, densest at the top."""
+    end = np.arcsinh((bottom - top) / width)
+    z = top + width * np.sinh(np.linspace(0, end, 5 + int(2 * end)))
+    z[0], z[-1] = top, bottom
+    return z
 
 
-def planes_between(parts: Parts, knots: Array, depths: Array, layer: int) -> list[Plane]:
-    """As ``plane`` at several ``depths``, evaluated together: one around the same point share its rings."""
+def _planes(parts: Parts, knots: Array, depths: Array, layer: int) -> list[Plane]:
+    """Planes at ``depths`` > 0, sampled at ``knots``, together: those around one point share its rings."""
     r, z = np.broadcast_arrays(knots, depths[:, None])
     normal, tangential, bound = parts(r, z, layer)
 
@@ -150,7 +182,7 @@ def planes_between(parts: Parts, knots: Array, depths: Array, layer: int) -> lis
     ]
 
 
-def surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
+def _surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
     """The surface out to a + ``reach`` under a contact of radius ``a``, on a coating of thickness ``h``.
 
     Splines in theta = arcsin(r/a) inside, eta = arcosh(r/a) outside: the roots of the edge are smooth there.
@@ -166,10 +198,16 @@ def surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
     sides = np.stack([normal + g * tangential for g in (parts.friction, -parts.friction)])
     bound[:, :, inside - 1] = edge_uncertainty(sides[:, :, edge], bound[:, :, edge], _change(parts))
 
-    def joined(values: Array, parity: Array, keep: Callable[[int], NDArray[np.int_]]) -> _Joined:
+    def joined(values: Array, parity: Array, keep: Callable[[int], NDArray[np.int_]]) -> Curve:
         i, o = keep(inside), keep(eta.size)
         within = _spline(theta[i], values[:, i], parity)
-        return _Joined(a, within, _spline(eta[o], values[:, inside - 1 + o], None))
+        beyond = _spline(eta[o], values[:, inside - 1 + o], None)
+
+        def curve(r: Array) -> Array:
+            s = r / a
+            return np.where(s <= 1, within(np.arcsin(np.minimum(s, 1))), beyond(np.arccosh(np.maximum(s, 1))))
+
+        return curve
 
     def curves(keep: Callable[[int], NDArray[np.int_]]) -> tuple[Curve, Curve]:
         return joined(normal, PARITY, keep), joined(tangential, -PARITY, keep)
@@ -187,20 +225,6 @@ def _change(parts: Parts) -> Array | None:
 
     change = followed(parts.solution, at_edge)
     return None if change is None else change.T[None]
-
-
-@dataclass(frozen=True)
-class _Joined:
-    """Two splines that meet at r = a."""
-
-    a: float
-    within: Curve
-    beyond: Curve
-
-    def __call__(self, r: Array) -> Array:
-        s = r / self.a
-        within = self.within(np.arcsin(np.minimum(s, 1)))
-        return np.where(s <= 1, within, self.beyond(np.arccosh(np.maximum(s, 1))))
 
 
 def _spline(at: Array, values: Array, parity: Array | None) -> Curve:

@@ -7,7 +7,6 @@ depths, then evaluated by the solution itself.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from typing import Literal, get_args
 
 import numpy as np
@@ -23,11 +22,9 @@ from verification.study.friction_planes import (
     ZZ,
     Parts,
     Plane,
-    crowded,
-    plane,
-    planes_between,
+    inner_planes,
+    outer_planes,
     stress_at,
-    surface,
 )
 
 Measure = Callable[[Array], Array]
@@ -76,17 +73,9 @@ def quantities(
     if any(frictions) and not problem.friction:
         raise ValueError("the solution has no friction; solve with friction=1")
     parts = Parts(solution, problem.friction)
-    a, z = float(solution.contact_radius), problem.interfaces
-    tops, bases, within, near = [surface(parts, a, z[0], min(a + 2 * z[0], 7 * a))], [], [], []
-    for k, (above, h) in enumerate(pairwise((0.0, *z))):
-        knots = crowded(a, 0.5 * min(a, h), a + 2.5 * h)
-        bases.append(plane(parts, knots, h, k))
-        tops.append(plane(parts, knots, h, k + 1))
-        near.append(crowded(a, 0.5 * min(a, h), 0.5 * (a + h)))
-        within.append(planes_between(parts, near[k], depths(above, h, 0.5 * a)[1:-1], k))
-    h, n = z[-1], len(z)
-    deep = depths(h, 1.5 * h + 2 * a, 0.5 * max(a / 2, h))[1:]
-    below = [tops[-1], *planes_between(parts, near[-1], deep, n)]
+    z, n = problem.interfaces, len(problem.coatings)
+    tops, bases = outer_planes(parts, z, z[0])
+    inner = [inner_planes(parts, z, layer) for layer in range(n + 1)]
     lines: dict[str, tuple[list[Plane], Measure]] = {
         "sigma_xx_surface": (tops[:1], lambda s: s[XX]),
         "sigma_xx_base": (bases, lambda s: s[XX]),
@@ -94,10 +83,7 @@ def quantities(
         "sigma_xz_interface": (bases, lambda s: np.abs(s[XZ])),
         "sigma_zz_interface": (bases, lambda s: s[ZZ]),
     }
-    layers = {
-        "von_mises_coating": [[tops[k], *within[k], bases[k]] for k in range(n)],
-        "von_mises_substrate": [below],
-    }
+    layers = {"von_mises_coating": range(n), "von_mises_substrate": range(n, n + 1)}
     found: dict[tuple[float, float], dict[str, Located]] = {}
     for f in frictions:
         alone = {
@@ -110,16 +96,16 @@ def quantities(
                 added = stress if name in ("sigma_xx_surface", "sigma_xx_base") else 0.0
                 total = [replace(at, value=at.value + added * (layer == swept)) for layer, at in places]
                 here[name] = tensile(max(total, key=lambda place: place.value))
-            for name, bodies in layers.items():
+            for name, body in layers.items():
                 if name == "von_mises_substrate" and (residual[0], f) in found:
                     here[name] = found[residual[0], f][name]
                     continue
                 candidates = []
-                for planes in bodies:
-                    layer = planes[0].layer
+                for layer in body:
+                    planes = [tops[layer], *inner[layer][0], *bases[layer : layer + 1]]
                     measure = with_residual(von_mises, stress if layer == swept else 0.0)
                     candidates += [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
-                    candidates += inside(parts, planes, near[min(layer, n - 1)], f, measure)
+                    candidates += inside(parts, planes, inner[layer][1], f, measure)
                 here[name] = max(candidates, key=lambda place: place.value)
             found[stress, f] = here
     return found
@@ -131,14 +117,6 @@ def with_residual(measure: Measure, residual: float) -> Measure:
         return measure
     added = residual * np.array([1.0, 1.0, 0.0, 0.0])
     return lambda s: measure(s + added.reshape(4, *[1] * (s.ndim - 1)))
-
-
-def depths(top: float, bottom: float, width: float) -> Array:
-    """Depths from ``top`` to ``bottom``, densest at the top."""
-    end = np.arcsinh((bottom - top) / width)
-    z = top + width * np.sinh(np.linspace(0, end, 5 + int(2 * end)))
-    z[0], z[-1] = top, bottom
-    return z
 
 
 def largest(line: Plane, measure: Measure, friction: float) -> Located:

@@ -37,12 +37,8 @@ _DIGITS = ("python", "numpy", "scipy", "ducc0", "scikit-fem", "gmsh", "mkl")
 def solve_key(request: Mapping[str, Any]) -> str:
     """Key of a request, 64 hexadecimal digits; equal for equal requests to equal code."""
     canonical = json.dumps(request, sort_keys=True, separators=(",", ":"), allow_nan=False)
-    return hashlib.sha256(f"{canonical}\n{code_version(request['source'])}".encode()).hexdigest()
-
-
-def code_version(source: str) -> str:
-    """Fingerprint of the code behind an answer of ``source``."""
-    return fingerprint((SOURCES[source].package, *_SEARCH), _DIGITS)
+    code = fingerprint((SOURCES[request["source"]].package, *_SEARCH), _DIGITS)
+    return hashlib.sha256(f"{canonical}\n{code}".encode()).hexdigest()
 
 
 @dataclass(frozen=True)

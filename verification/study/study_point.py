@@ -5,7 +5,6 @@ answer.
 """
 
 import json
-import sys
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -18,10 +17,9 @@ from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import message_of
 from verification.running.provenance import versions
-from verification.sources.source_registry import SOURCES
+from verification.sources.source_registry import solvers
 from verification.study.largest_stresses import QUANTITIES as STRESSES
 from verification.study.largest_stresses import quantities
-from verification.study.solve_cache import code_version
 from verification.study.study_table import SCALARS, SCALES
 
 
@@ -31,8 +29,8 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness), above
     and below (fixed coatings on either side of it), residual (stresses of the coating [Pa]), substrate
     (E, nu), ball (E, nu, coatings) unless it is rigid.
-    Returns {"rows": [one dictionary for each residual stress, then friction], "seconds", "versions", "code",
-    "memory" [bytes]}; a solve that fails leaves its message in every row.
+    Returns {"rows": [one dictionary for each residual stress, then friction], "seconds", "versions"}; a solve
+    that fails leaves its message in every row.
     """
     begin = time.perf_counter()
     frictions = [float(f) for f in request["frictions"]]
@@ -40,36 +38,18 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     problem = problem_of(request, 1.0 if any(frictions) else 0.0)
     try:
         with threadpool_limits(1):  # the order of sums over threads changes the last digit
-            solve = SOURCES[request["source"]].solve
-            assert solve is not None
-            solution = solve(problem, request["numerics"])
+            solution = solvers()[request["source"]](problem, request["numerics"])
             swept = len(request.get("above", ()))
             rows = _rows(solution, problem, frictions, request["residual"], swept)
     except Exception as error:  # a point that fails is a row with its message
         rows = failed_rows(request, message_of(error))
-    return {
-        "rows": rows,
-        "seconds": time.perf_counter() - begin,
-        "versions": versions(),
-        "code": code_version(request["source"]),
-        "memory": peak_memory(),
-    }
+    return {"rows": rows, "seconds": time.perf_counter() - begin, "versions": versions()}
 
 
 def failed_rows(request: Mapping[str, Any], message: str) -> list[dict[str, Any]]:
     """A row with the ``message`` for each residual stress and friction of ``request``."""
     failed = [{"friction": float(f), "status": "failed", "failure": message} for f in request["frictions"]]
     return [row for _ in request["residual"] for row in failed]
-
-
-def peak_memory() -> int:
-    """Peak resident memory of this process [bytes]; 0 where the system does not provide it."""
-    try:
-        import resource
-    except ImportError:
-        return 0
-    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return most if sys.platform == "darwin" else 1024 * most
 
 
 def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:

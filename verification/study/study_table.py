@@ -85,20 +85,8 @@ def write_table(path: Path, rows: Iterable[Mapping[str, Any]], study: Mapping[st
 
 def read_columns(path: Path) -> dict[str, NDArray[Any]]:
     """Every column of a table by name; null numbers are NaN, null texts None. Raises StoreError."""
-    table = _read(path, pq.read_table)
-    return {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}
-
-
-def read_study(path: Path) -> dict[str, Any]:
-    """The content stored with the rows. Raises StoreError."""
-    metadata = _read(path, pq.read_schema).metadata or {}
-    if b"coatcheck_study" not in metadata:
-        raise StoreError(f"{path}: not the table of a study; give the .parquet that coatcheck study wrote")
-    return json.loads(metadata[b"coatcheck_study"])
-
-
-def _read(path: Path, reader: Any) -> Any:
     try:
-        return reader(path)
+        table = pq.read_table(path)
     except (OSError, pa.ArrowException) as error:
         raise StoreError(f"{path}: cannot be read as a table ({str(error).splitlines()[0]})") from None
+    return {name: table[name].to_numpy(zero_copy_only=False) for name in table.column_names}

@@ -3,7 +3,7 @@
 The rows of the other sources are marks beside the curve.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +19,7 @@ from verification.study.study_table import SCALARS, SCALES, SOURCES
 class Curve:
     """Quantities over ``h``, the thickness over a_h, in increasing order; p_h [Pa], a_h and delta_h [m].
 
-    stress, uncertainty : each of QUANTITIES over p_h.   x, z : their positions over a_h.
+    stress, uncertainty : each of QUANTITIES over p_h.
     scalar : peak_pressure, contact_radius, approach over p_h, a_h, delta_h.
     marks : by source, by quantity the (h, value) of cross-checked points.
     failures : (h, message) of points that could not be solved.
@@ -33,8 +33,6 @@ class Curve:
     h: Array
     stress: Mapping[str, Array]
     uncertainty: Mapping[str, Array]
-    x: Mapping[str, Array]
-    z: Mapping[str, Array]
     scalar: Mapping[str, Array]
     marks: Mapping[str, Mapping[str, tuple[Array, Array]]]
     failures: tuple[tuple[float, str], ...]
@@ -71,10 +69,16 @@ def curves(columns: Mapping[str, NDArray[Any]]) -> tuple[Curve, ...]:
 
 def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
     """The largest difference of each other source by quantity; a source that solved nothing is absent."""
-    found = []
-    for source, here, beside in _checked(columns):
+    point, solved, found = columns["point"], columns["status"] == "solved", []
+    first, *others = (np.flatnonzero((columns["source"] == source) & solved) for source in SOURCES)
+    for source, rows in zip(SOURCES[1:], others, strict=True):
+        _, its, lead = np.intersect1d(point[rows], point[first], return_indices=True)
+        if not its.size:
+            continue
+        here, beside = rows[its], first[lead]
+        smaller = np.minimum(columns["p_h"][here], columns["peak_pressure"][here])
         for quantity, scale in SCALES.items():
-            over = _scale(columns, here) if scale == "p_h" else columns[scale][here]
+            over = smaller if scale == "p_h" else columns[scale][here]
             difference = np.abs(columns[quantity][here] - columns[quantity][beside]) / over
             uncertainty = columns[f"{quantity}_uncertainty"]
             i = int(np.nanargmax(difference))
@@ -84,25 +88,6 @@ def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
             ratio, h, friction = map(float, place)
             found.append(Difference(source, quantity, here.size, largest, stated, ratio, h, friction))
     return tuple(found)
-
-
-def _checked(
-    columns: Mapping[str, NDArray[Any]],
-) -> Iterator[tuple[str, NDArray[np.int_], NDArray[np.int_]]]:
-    """Each other source, its solved rows, those of the semi-analytical method at the same points."""
-    point = columns["point"]
-    first, *others = (
-        np.flatnonzero((columns["source"] == source) & (columns["status"] == "solved")) for source in SOURCES
-    )
-    for source, rows in zip(SOURCES[1:], others, strict=True):
-        _, mine, its = np.intersect1d(point[rows], point[first], return_indices=True)
-        if mine.size:
-            yield source, rows[mine], first[its]
-
-
-def _scale(columns: Mapping[str, NDArray[Any]], rows: NDArray[np.int_]) -> Array:
-    """Divisor of a difference of stresses [Pa]: the smaller of p_h and p0."""
-    return np.minimum(columns["p_h"][rows], columns["peak_pressure"][rows])
 
 
 def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -> Curve:
@@ -130,8 +115,6 @@ def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -
         take("thickness_over_a_h"),
         {q: take(f"{q}_over_p_h") for q in QUANTITIES},
         {q: take(f"{q}_uncertainty") / p_h for q in QUANTITIES},
-        {q: take(f"{q}_x_over_a_h") for q in QUANTITIES},
-        {q: take(f"{q}_z_over_a_h") for q in QUANTITIES},
         {q: take(f"{q}_over_{scale}") for q, scale in SCALARS.items()},
         marks,
         tuple(

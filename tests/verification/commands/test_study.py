@@ -28,7 +28,6 @@ def written(folder):
         ("bad.toml", {}, "bad.toml"),
         ("good.toml", {"jobs": 0}, "--jobs = 0"),
         ("good.toml", {"limit": 0}, "--limit = 0"),
-        ("good.toml", {"scheduler": "nowhere"}, "--scheduler nowhere"),
     ],
 )
 def test_bad_input_is_one_sentence_and_nothing_is_written(plan, options, said, tmp_path, monkeypatch, capsys):

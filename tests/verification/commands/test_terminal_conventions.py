@@ -211,8 +211,8 @@ def test_a_damaged_case_is_named_and_the_page_left_alone(stored, capsys, spoiled
 @pytest.mark.parametrize(
     ("command", "unused"),
     [
-        ("--help", ("numpy", "scipy", "pydantic", "matplotlib", "dask", "fem_reference", "semianalytic")),
-        ("list", ("scipy", "pint", "matplotlib", "dask", "gmsh", "pyvista", "fem_reference", "semianalytic")),
+        ("--help", ("numpy", "scipy", "pydantic", "matplotlib", "fem_reference", "semianalytic")),
+        ("list", ("scipy", "pint", "matplotlib", "gmsh", "pyvista", "fem_reference", "semianalytic")),
     ],
 )
 def test_commands_that_solve_nothing_load_no_solver(command, unused):

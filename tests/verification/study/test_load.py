@@ -1,6 +1,5 @@
 """Critical loads: exact where h/a_h has no part, similarity of contacts, strengths that scatter."""
 
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -47,24 +46,7 @@ def power_law(load, residual=0.0, factor=1e8):
     stress = {mode: 0.3 * p_h + (residual if mode == "sigma_xx_surface" else 0.0) for mode in QUANTITIES}
     stress = {mode: np.maximum(value, 0) for mode, value in stress.items()}
     zero = np.zeros(load.size)
-    return Ramp(1.0, 3e-6, 0.0, residual, load, p_h, zero, p_h, zero, stress, dict.fromkeys(QUANTITIES, zero))
-
-
-@pytest.mark.slow
-def test_load_ramp_of_equal_moduli_follows_the_cubic_root():
-    study = parse_study(EQUAL.encode(), Path("equal.toml"))
-    found = []
-    for one in study.solves():
-        found += table_rows(one.first, one.key, one.request, answer(one.request), one.places)
-    root = [
-        (row["load"] ** (1 / 3), row["peak_pressure"], row["contact_radius"])
-        for row in found[:: len(study.frictions)]
-    ]
-    assert len(root) == 4
-    for (k, p0, a), (k2, p02, a2) in pairwise(root):
-        # of solves of their own, each at another h/a_h
-        assert (p02 / p0) / (k2 / k) == pytest.approx(1, abs=1e-6)
-        assert (a2 / a) / (k2 / k) == pytest.approx(1, abs=1e-6)
+    return Ramp(1.0, 3e-6, 0.0, residual, load, p_h, p_h, stress, dict.fromkeys(QUANTITIES, zero))
 
 
 @pytest.mark.parametrize("residual", [0.0, -0.2e8, 0.1e8])

@@ -33,22 +33,6 @@ def test_thicknesses_crowd_around_their_geometric_middle():
     assert max(ratios) > 1.2 * min(ratios) > 1
 
 
-def test_points_count_through_frictions_then_thicknesses_then_moduli():
-    study = parse_study(STUDY.encode(), PATH)
-    curve = [s for s in study.solves() if s.source == "semianalytic"]
-    assert [s.first for s in curve] == [0, 2, 4, 6, 8, 10]
-    assert [s.request["coating"][0] / 210e9 for s in curve] == [0.5] * 3 + [2.0] * 3
-    assert [s.request["coating"][2] for s in curve] == [2e-5, 4e-5, 8e-5] * 2
-    assert all(s.request["frictions"] == [0.0, 0.25] for s in curve)
-
-
-def test_every_kth_point_is_checked_by_both_others():
-    study = parse_study(STUDY.encode(), PATH)
-    for source in ("fem_reference", "integral_equation"):
-        # points 0, 5, 10 lie in the solves that begin at 0, 4, 10
-        assert [s.first for s in study.solves() if s.source == source] == [0, 4, 10]
-
-
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [

@@ -27,7 +27,7 @@ STRESSED = ("sigma_xx_surface", "sigma_xx_base")  # to which the residual stress
 class Ramp:
     """One coating under a rising ``load`` [N], (n,); ``stress`` by mode with its ``uncertainty`` [Pa], (n,).
 
-    ratio : E1/E2.   thickness [m].   p_h, p0 [Pa], a, a_h [m] : (n,).   residual [Pa].
+    ratio : E1/E2.   thickness [m].   p_h, p0 [Pa] : (n,).   residual [Pa].
     """
 
     ratio: float
@@ -36,9 +36,7 @@ class Ramp:
     residual: float
     load: Array
     p_h: Array
-    a_h: Array
     p0: Array
-    a: Array
     stress: Mapping[str, Array]
     uncertainty: Mapping[str, Array]
 
@@ -102,7 +100,6 @@ def critical(ramp: Ramp, criteria: Criteria, between: tuple[float, float]) -> Cr
     if criteria.strength is None:
         raise ValueError("criteria.strength is missing; a critical load needs strengths")
     load = np.geomspace(*between, SAMPLES)
-    load[0], load[-1] = between
     strengths = criteria.given()
     drawn = strengths_drawn(strengths)
     nominal = {mode: float(one.quantile(0.5)) for mode, one in strengths.items()}
@@ -146,40 +143,26 @@ def _band(loads: Array) -> tuple[float, float, float]:
 
 def ramps(columns: Mapping[str, NDArray[Any]]) -> tuple[Ramp, ...]:
     """Every ramp of a table of loads by the semi-analytical method, of at least four loads."""
-    mine = (columns["source"] == SOURCES[0]) & (columns["status"] == "solved")
-    names = ("modulus_ratio", "thickness", "friction")
-    keys = sorted(set(zip(*(columns[name][mine].tolist() for name in names), strict=True)))
+    solved = (columns["source"] == SOURCES[0]) & (columns["status"] == "solved")
+    keys = np.stack([columns[name] for name in ("modulus_ratio", "thickness", "friction")], axis=1)
     found = []
-    for key in keys:
-        rows = np.flatnonzero(
-            mine & np.logical_and.reduce([columns[n] == v for n, v in zip(names, key, strict=True)])
-        )
+    for key in np.unique(keys[solved], axis=0):
+        ratio, thickness, friction = key.tolist()
+        rows = np.flatnonzero(solved & (keys == key).all(axis=1))
         rows = rows[np.argsort(columns["load"][rows])]
+        ramp = {name: column[rows] for name, column in columns.items()}
         if rows.size >= 4:
-            found.append(_ramp(columns, rows, *key))
+            found.append(
+                Ramp(
+                    ratio,
+                    thickness,
+                    friction,
+                    residual=float(ramp["residual_stress"][0]),
+                    load=ramp["load"],
+                    p_h=ramp["p_h"],
+                    p0=ramp["peak_pressure"],
+                    stress={name: ramp[name] for name in QUANTITIES},
+                    uncertainty={name: ramp[f"{name}_uncertainty"] for name in QUANTITIES},
+                )
+            )
     return tuple(found)
-
-
-def _ramp(
-    columns: Mapping[str, NDArray[Any]],
-    rows: NDArray[np.int_],
-    ratio: float,
-    thickness: float,
-    friction: float,
-) -> Ramp:
-    def take(name: str) -> Array:
-        return columns[name][rows].astype(float)
-
-    return Ramp(
-        ratio,
-        thickness,
-        friction,
-        float(take("residual_stress")[0]),
-        take("load"),
-        take("p_h"),
-        take("a_h"),
-        take("peak_pressure"),
-        take("contact_radius"),
-        {name: take(name) for name in QUANTITIES},
-        {name: take(f"{name}_uncertainty") for name in QUANTITIES},
-    )

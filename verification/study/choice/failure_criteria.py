@@ -42,11 +42,6 @@ class Uniform(Strict):
             raise ValueError(f"runs from {self.start:g} to {self.to:g} Pa; give from < to")
         return self
 
-    @property
-    def first(self) -> tuple[str, float]:
-        """Key and value of its lower end."""
-        return ".from", self.start
-
 
 class LogNormal(Strict):
     """A strength of known ``mean`` and ``standard_deviation`` [Pa]."""
@@ -59,11 +54,6 @@ class LogNormal(Strict):
         if self.standard_deviation > self.mean:
             raise ValueError("standard_deviation exceeds the mean; check its unit")
         return self
-
-    @property
-    def first(self) -> tuple[str, float]:
-        """Key and value of its mean."""
-        return ".mean", self.mean
 
 
 def _kind(given: Any) -> str:
@@ -150,8 +140,12 @@ class Criteria(Strict):
         """A line for each implausible strength."""
         found = []
         for name, given in (self.strength or {}).items():
-            # of a range its lower end, of a distribution its mean
-            key, value = ("", given) if isinstance(given, float) else given.first
+            if isinstance(given, Uniform):
+                key, value = ".from", given.start
+            elif isinstance(given, LogNormal):
+                key, value = ".mean", given.mean
+            else:
+                key, value = "", given
             if value < 1e6:
                 unit = "GPa" if value < 100 else "MPa"
                 slip = "check its unit" if isinstance(value, InSI) else f"{value:g} looks like {unit}"
@@ -220,7 +214,6 @@ def judged(curve: Curve, criteria: Criteria) -> Judged:
     bound = scale * (stress + np.nan_to_num([curve.uncertainty[mode] for mode in strengths]))
     s = np.log(curve.h)
     h = np.geomspace(curve.h[0], curve.h[-1], SAMPLES)
-    h[0], h[-1] = curve.h[0], curve.h[-1]
     return Judged(
         curve,
         tuple(strengths),

@@ -6,7 +6,7 @@ sampled, and in each sample the mode with the largest utilisation governs.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -96,24 +96,24 @@ class Choice:
         return sampled(here, self.criteria.given())
 
 
-def sampled(stress: Array, strengths: Mapping[str, Strength], drawn: int = DRAWN) -> Chances:
+def sampled(stress: Array, strengths: Mapping[str, Strength]) -> Chances:
     """Probabilities at ``stress`` (modes, n) [Pa] against independent ``strengths`` in the same order.
 
-    Their standard error is at most 0.5/sqrt(drawn), 0.4 %.
+    Their standard error is at most 0.5/sqrt(DRAWN), 0.4 %.
     """
-    strength = strengths_drawn(strengths, drawn)
+    strength = strengths_drawn(strengths)
     governs, breaks = np.zeros(stress.shape), np.zeros(stress.shape)
     for k, here in enumerate(stress.T):
         use = here / strength
         mode, beyond = use.argmax(axis=1), use.max(axis=1) > 1
         governs[:, k] = np.bincount(mode, minlength=here.size)
         breaks[:, k] = np.bincount(mode[beyond], minlength=here.size)
-    return Chances(governs / drawn, breaks.sum(axis=0) / drawn, breaks / drawn)
+    return Chances(governs / DRAWN, breaks.sum(axis=0) / DRAWN, breaks / DRAWN)
 
 
-def strengths_drawn(strengths: Mapping[str, Strength], drawn: int = DRAWN) -> Array:
-    """Samples of independent ``strengths`` [Pa], (drawn, modes); the same each time."""
-    shares = np.random.default_rng(SEED).random((drawn, len(strengths)))
+def strengths_drawn(strengths: Mapping[str, Strength]) -> Array:
+    """Samples of independent ``strengths`` [Pa], (DRAWN, modes); the same each time."""
+    shares = np.random.default_rng(SEED).random((DRAWN, len(strengths)))
     return np.stack([s.quantile(shares[:, i]) for i, s in enumerate(strengths.values())], axis=1)
 
 
@@ -122,7 +122,6 @@ def choice(judgements: Sequence[Judged], criteria: Criteria) -> Choice:
     members = tuple(sorted(judgements, key=lambda j: j.curve.friction))
     low, high = max(j.curve.h[0] for j in members), min(j.curve.h[-1] for j in members)
     h = np.geomspace(low, high, SAMPLES)
-    h[0], h[-1] = low, high
     use = np.stack([PchipInterpolator(np.log(j.curve.h), j.utilisation, axis=1)(np.log(h)) for j in members])
     # NaN of curves with too few points to estimate it
     errors = [j.interpolation_error * float(np.abs(j.utilisation).max()) / HALVED for j in members]
@@ -141,11 +140,11 @@ def choice(judgements: Sequence[Judged], criteria: Criteria) -> Choice:
     ranges = members[0].admissible if members[0].limited else ()
     for j in members[1:]:
         ranges = _overlap(ranges, j.admissible)
-    ends = tuple(
-        tuple(None if at in (h[0], h[-1]) else _end(found, int(np.abs(h - at).argmin()), at) for at in pair)
-        for pair in ranges
-    )
-    return Choice(members, criteria, h, use, error, tolerance, even, ends)  # type: ignore[arg-type]
+
+    def end(at: float) -> End | None:
+        return None if at in (h[0], h[-1]) else _end(found, int(np.abs(h - at).argmin()), at)
+
+    return replace(found, even=even, ranges=tuple((end(low), end(high)) for low, high in ranges))
 
 
 def _end(found: Choice, k: int, h: float | None = None) -> End:

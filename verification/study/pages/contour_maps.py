@@ -1,6 +1,7 @@
 """Contour maps of sigma_xx, sigma_xz, von Mises in the x-z plane for a few thicknesses."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,9 +9,9 @@ from matplotlib.ticker import MaxNLocator
 
 from verification.cases.unit_numbers import Units
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact
-from verification.problem.quantity import IN_PLANE, QUANTITIES, von_mises
+from verification.problem.quantity import QUANTITIES, von_mises
 from verification.sources.source_registry import METHODS, solvers
+from verification.study.friction_planes import XX, XZ, in_plane
 from verification.study.largest_stresses import with_residual
 from verification.study.pages.study_figures import Drawn, drawn, sheet
 from verification.study.study_plan import Study
@@ -34,12 +35,15 @@ def contour_figures(study: Study, curve: Curve, thicknesses: Sequence[float]) ->
     residual stress of the coating. Raises what it raises.
     """
     a_h, units = curve.a_h, study.units
-    solutions = [_solved(study, curve, h) for h in thicknesses]
+    E = min(study.moduli, key=lambda E: abs(E / study.substrate[0] - curve.ratio))
+    coatings = [(E, study.coating_nu, h * a_h) for h in thicknesses]
+    bare = replace(study.bare, friction=curve.friction)
+    numerics = study.numerics.get(METHODS[0], {}) | {"estimate_uncertainty": False}
+    solutions = [solvers()[METHODS[0]](replace(bare, coatings=(one,)), numerics) for one in coatings]
     radius = max(s.contact_radius for s in solutions) / a_h
-    half, deep = WIDEST * radius, DEEPEST * radius
-    x = np.linspace(-half, half, COLUMNS)
-    depths = [_depths(h, deep) for h in thicknesses]
-    residual = study.residual[study.moduli.index(_modulus(study, curve))] if study.residual else 0.0
+    x = np.linspace(-WIDEST * radius, WIDEST * radius, COLUMNS)
+    depths = [_depths(h, DEEPEST * radius) for h in thicknesses]
+    residual = study.residual[study.moduli.index(E)] if study.residual else 0.0
     fields = [
         [
             _fields(s, x * a_h, z * a_h, layer, 0.0 if layer else residual, units)
@@ -52,7 +56,7 @@ def contour_figures(study: Study, curve: Curve, thicknesses: Sequence[float]) ->
         low, high = _range([layer[column] for row in fields for layer in row])
         scales.append(np.asarray(MaxNLocator(LEVELS, steps=[1, 2, 2.5, 5, 10]).tick_values(low, high)))
     return [
-        _one(curve, units, x, *one, scales, (half, deep))
+        _one(curve, units, x, *one, scales)
         for one in zip(thicknesses, solutions, depths, fields, strict=True)
     ]
 
@@ -66,7 +70,6 @@ def _one(
     levels_z: list[Array],
     field: list[tuple[Array, Array, Array]],
     scales: list[Array],
-    extent: tuple[float, float],
 ) -> Drawn:
     size = curve.a_h / units.metre
     with sheet(150, right=17) as figure:
@@ -82,8 +85,8 @@ def _one(
             axes.axhline(h * size, color="black", linewidth=0.9, linestyle=(0, (4, 2)))
             edge = solution.contact_radius / units.metre
             axes.plot([-edge, edge], [0, 0], color="black", linewidth=3, solid_capstyle="butt")
-            axes.set_xlim(-extent[0] * size, extent[0] * size)
-            axes.set_ylim(extent[1] * size, 0)
+            axes.set_xlim(x[0] * size, x[-1] * size)
+            axes.set_ylim(levels_z[-1][-1] * size, 0)
             axes.set_ylabel(f"z [{units.length}]")
             place = axes.get_position()
             bar = figure.colorbar(
@@ -95,9 +98,9 @@ def _one(
         panels[-1].set_xlabel(f"x [{units.length}], along sliding")
         over = panels[0].secondary_xaxis("top", functions=(lambda v: v / size, lambda v: v * size))
         over.set_xlabel("$x / a_h$")
-        rows = [["h / a_h", f"x [{units.length}]", f"z [{units.length}]", "layer"]]
-        rows[0] += [f"{name} [{units.stress}]" for name in ("sigma_xx", "sigma_xz", "von Mises")]
-        rows += _numbers(h, x * size, [z * size for z in levels_z], field)
+        heads = ["h / a_h", f"x [{units.length}]", f"z [{units.length}]", "layer"]
+        heads += [f"{name} [{units.stress}]" for name in ("sigma_xx", "sigma_xz", "von Mises")]
+        rows = [heads, *_numbers(h, x * size, [z * size for z in levels_z], field)]
         name = f"contours_{curve.ratio:.4g}_f{curve.friction:g}_h{h:.3g}".replace(".", "_")
         return drawn(
             figure,
@@ -106,17 +109,6 @@ def _one(
             "",
             rows,
         )
-
-
-def _modulus(study: Study, curve: Curve) -> float:
-    return min(study.moduli, key=lambda E: abs(E / study.substrate[0] - curve.ratio))
-
-
-def _solved(study: Study, curve: Curve, h: float) -> Any:
-    coating = (_modulus(study, curve), study.coating_nu, h * curve.a_h)
-    problem = CoatedContact(study.radius, study.load, (coating,), study.substrate, curve.friction, study.ball)
-    numerics = study.numerics.get(METHODS[0], {}) | {"estimate_uncertainty": False}
-    return solvers()[METHODS[0]](problem, numerics)
 
 
 def _depths(h: float, deep: float) -> list[Array]:
@@ -132,10 +124,8 @@ def _fields(
     solution: Any, x: Array, z: Array, layer: int, residual: float, units: Units
 ) -> tuple[Array, Array, Array]:
     sigma = solution.stress(x[None, :], 0.0, z[:, None], layer=layer)
-    s = np.array([sigma[component] for component in IN_PLANE.values()]) / units.pascal
-    names, added = list(IN_PLANE), residual / units.pascal
-    stress = (s[names.index("sigma_xx")] + added, s[names.index("sigma_xz")])
-    return *stress, np.asarray(with_residual(von_mises, added)(s))
+    s, added = in_plane(sigma) / units.pascal, residual / units.pascal
+    return s[XX] + added, s[XZ], np.asarray(with_residual(von_mises, added)(s))
 
 
 def _range(values: Sequence[Array]) -> tuple[float, float]:

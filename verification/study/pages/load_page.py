@@ -9,15 +9,7 @@ from matplotlib.ticker import MaxNLocator
 from verification.page.page_parts import Cell, Part, Section, number, table_of
 from verification.study.choice.critical_load import Critical, critical, ramps
 from verification.study.choice.failure_criteria import MODES
-from verification.study.pages.study_assembly import (
-    Draw,
-    Written,
-    check_sections,
-    draw_sections,
-    failed_section,
-    inputs_section,
-    write_page,
-)
+from verification.study.pages.study_assembly import Draw, Written, common_sections, write_page
 from verification.study.pages.study_figures import (
     COLOURS,
     DASHES,
@@ -31,7 +23,6 @@ from verification.study.pages.study_figures import (
 from verification.study.pages.thickness_page import rounded
 from verification.study.study_plan import Study
 from verification.study.study_table import read_columns
-from verification.study.thickness_curves import differences
 
 
 def write_load_report(
@@ -56,17 +47,11 @@ def write_load_report(
             ("map", "Critical load against thickness", lambda: _maps(study, found)),
             ("ramp", "Load ramp", lambda: _tracks(study, found)),
         ]
-    drawings = draw_sections(draws, folder / "figures" / study.name, drawing)
     said = answers(study, found)
     failed = np.flatnonzero(columns["status"] != "solved")
     failures = sorted({f"h = {columns['thickness'][i]:.4g} m: {columns['failure'][i]}" for i in failed})
-    sections = [
-        Section("critical", "Critical loads", [Part(text) for text in said] + [_table(study, found)]),
-        inputs_section(study),
-        *drawings,
-        *check_sections(differences(columns)),
-        *failed_section(failures),
-    ]
+    first = Section("critical", "Critical loads", [Part(text) for text in said] + [_table(study, found)])
+    sections = [first, *common_sections(study, folder, draws, columns, failures, drawing)]
     summary = said[0] if said else f"No answer: no ramp of {study.title} has four solved loads."
     return write_page(table, study, folder, said, summary, sections, [], facts)
 
@@ -74,19 +59,20 @@ def write_load_report(
 def answers(study: Study, found: Sequence[Critical]) -> list[str]:
     """For each coating and thickness the critical load at the friction where it is lowest."""
     said = []
-    keys = dict.fromkeys((one.ramp.ratio, one.ramp.thickness) for one in found)
-    for ratio, thickness in keys:
-        group = [one for one in found if (one.ramp.ratio, one.ramp.thickness) == (ratio, thickness)]
-        worst = min(group, key=_weakness)
-        several = f"E1/E2 = {ratio:.3g}, " if len({key[0] for key in keys}) > 1 else ""
-        name = f"{several}{study.units.shown_length(thickness)}, f = {worst.ramp.friction:g}"
-        said.append(f"{name}: {_said(worst)}.")
+    several = len({one.ramp.ratio for one in found}) > 1
+    for one in _weakest(found):
+        coating = f"E1/E2 = {one.ramp.ratio:.3g}, " if several else ""
+        name = f"{coating}{study.units.shown_length(one.ramp.thickness)}, f = {one.ramp.friction:g}"
+        said.append(f"{name}: {_said(one)}.")
     return said
 
 
-def _weakness(one: Critical) -> tuple[float, float, float]:
-    """Sorts the friction with the lowest critical load first, the highest friction of equal ones."""
-    return one.first[1], one.first[0], -one.ramp.friction
+def _weakest(found: Sequence[Critical]) -> list[Critical]:
+    """Of each coating and thickness the lowest critical load, at the highest friction of equal ones."""
+    weakest: dict[tuple[float, float], Critical] = {}
+    for one in sorted(found, key=lambda one: (one.first[1], one.first[0], -one.ramp.friction)):
+        weakest.setdefault((one.ramp.ratio, one.ramp.thickness), one)
+    return [weakest[key] for key in dict.fromkeys((one.ramp.ratio, one.ramp.thickness) for one in found)]
 
 
 def _said(one: Critical) -> str:
@@ -206,10 +192,9 @@ def _tracks(study: Study, found: Sequence[Critical]) -> list[Drawn]:
     For each coating and thickness at the friction with the lowest critical load.
     """
     drawings, units = [], study.units
-    for ratio, thickness in dict.fromkeys((one.ramp.ratio, one.ramp.thickness) for one in found):
-        group = [one for one in found if (one.ramp.ratio, one.ramp.thickness) == (ratio, thickness)]
-        one = min(group, key=_weakness)
-        ramp, strengths = one.ramp, study.criteria.given()
+    strengths = study.criteria.given()
+    for one in _weakest(found):
+        ramp = one.ramp
         modes = list(strengths)
         colours = {mode: COLOURS[list(MODES).index(mode)] for mode in modes}
         rows = [
@@ -250,9 +235,9 @@ def _tracks(study: Study, found: Sequence[Critical]) -> list[Drawn]:
                 ]
                 for i in some
             ]
-            h = units.shown_length(thickness)
-            name = f"ramp_{ratio:.4g}_{thickness / units.metre:.4g}".replace(".", "_")
-            title = f"Load ramp, E1/E2 = {ratio:.4g}, {h}, f = {ramp.friction:g}"
+            h = units.shown_length(ramp.thickness)
+            name = f"ramp_{ramp.ratio:.4g}_{ramp.thickness / units.metre:.4g}".replace(".", "_")
+            title = f"Load ramp, E1/E2 = {ramp.ratio:.4g}, {h}, f = {ramp.friction:g}"
             caption = (
                 "Triangles: critical loads at median strength. Below: probability of failure, by first mode."
             )

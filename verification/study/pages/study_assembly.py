@@ -1,11 +1,13 @@
 """What the reports of all studies share: figures as files, common sections, the page as a file."""
 
 import base64
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from markupsafe import Markup
+from numpy.typing import NDArray
 
 from verification.page.html_page import render_sections
 from verification.page.page_parts import (
@@ -27,7 +29,7 @@ from verification.running.checked_files import write_atomically
 from verification.study.choice.failure_criteria import MODES
 from verification.study.pages.study_figures import Drawn, write_drawn
 from verification.study.study_plan import Study
-from verification.study.thickness_curves import Difference
+from verification.study.thickness_curves import Difference, differences
 
 Draw = tuple[str, str, Callable[[], list[Drawn]]]  # anchor, title, function that draws the figures
 
@@ -62,28 +64,33 @@ def write_page(
     return Written(page, tuple(answer))
 
 
-def draw_sections(draws: Iterable[Draw], folder: Path, drawing: Callable[[str], None]) -> list[Section]:
-    """Draw every group of figures, write it to ``folder`` as PDF, SVG, CSV; a section for each with figures.
+def common_sections(
+    study: Study,
+    folder: Path,
+    draws: Iterable[Draw],
+    columns: Mapping[str, NDArray[Any]],
+    failures: Sequence[str],
+    drawing: Callable[[str], None],
+) -> list[Section]:
+    """The inputs; the figures, written under ``folder`` too; the cross-checks; what could not be solved.
 
-    drawing : called with the title of each group before it is drawn.   Raises StoreError.
+    drawing : called with the title of each group of figures before it is drawn. A group that fails may add
+    to ``failures``.   Raises StoreError.
     """
-    sections = []
+    sections = [_inputs_section(study)]
     for anchor, title, draw in draws:
         drawing(title)
-        found = draw()
-        for one in found:
-            write_drawn(one, folder)
-        if found:
+        if found := draw():
             sections.append(_drawn_section(anchor, title, found))
+        for one in found:
+            write_drawn(one, folder / "figures" / study.name)
+    sections.append(_check_section(differences(columns)))
+    if failures:
+        sections.append(Section("failed", "What could not be solved", [], failures[:200]))
     return sections
 
 
-def failed_section(failures: Sequence[str]) -> list[Section]:
-    """The first messages of what could not be solved; no section where all was."""
-    return [Section("failed", "What could not be solved", [], failures[:200])] if failures else []
-
-
-def inputs_section(study: Study) -> Section:
+def _inputs_section(study: Study) -> Section:
     """Every input and assumption in one table."""
     units, bare = study.units, study.bare
     E_ball = "rigid" if study.ball is None else _solid(*study.ball[:2])
@@ -132,10 +139,10 @@ def inputs_section(study: Study) -> Section:
     return Section("inputs", "Inputs and assumptions", [Part("", [Table("", ["input", "value"], rows)])])
 
 
-def check_sections(checks: Sequence[Difference]) -> list[Section]:
+def _check_section(checks: Sequence[Difference]) -> Section:
     """The largest differences of the other sources."""
     if not checks:
-        return [Section("checks", "Cross-check", [Part("No point was cross-checked.")])]
+        return Section("checks", "Cross-check", [Part("No point was cross-checked.")])
     table = table_of(
         "The largest difference from the semi-analytical method, over a_h, delta_h or the smaller of p_h and "
         "p0, where it occurs, the uncertainty both state there.",
@@ -152,7 +159,7 @@ def check_sections(checks: Sequence[Difference]) -> list[Section]:
         ],
         row_css=lambda d: "" if d.largest <= d.stated or d.stated != d.stated else "disagrees",
     )
-    return [Section("checks", "Cross-check", [Part("", [table])])]
+    return Section("checks", "Cross-check", [Part("", [table])])
 
 
 def _solid(E: float, nu: float) -> str:

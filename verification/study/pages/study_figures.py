@@ -51,7 +51,6 @@ NAMES = {
     "von_mises_coating": "von Mises, coating",
     "von_mises_substrate": "von Mises, substrate",
 }
-SCALE_NAMES = {"p_h": "p_h", "a_h": "a_h", "delta_h": r"\delta_h"}
 _SETTINGS: Any = {
     "font.size": 7,
     "font.family": "DejaVu Sans",
@@ -133,15 +132,6 @@ def _values(curve: Curve, quantity: str) -> Array:
     return curve.stress[quantity] if quantity in curve.stress else curve.scalar[quantity]
 
 
-def _scale(curve: Curve, quantity: str, units: Units) -> tuple[str, float, str]:
-    """Name of the scale of a quantity, its value in the units, the unit."""
-    scale = SCALARS.get(quantity, "p_h")
-    size = getattr(curve, scale)
-    if scale == "p_h":
-        return scale, size / units.pascal, units.stress
-    return scale, size / units.metre, units.length
-
-
 def _against_thickness(
     curves: Sequence[Curve], units: Units, name: str, quantities: Sequence[str], title: str
 ) -> Drawn:
@@ -168,7 +158,9 @@ def _against_thickness(
     with sheet(TOP + BOTTOM + 13.5 * sum(heights), -(-len(keys) // 3)) as figure:
         panels = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
         for axes, (quantity, heading, members) in zip(panels, panels_of, strict=False):
-            scale, size, unit = _scale(curves[0], quantity, units)
+            scale = SCALARS.get(quantity, "p_h")
+            unit, one_unit = (units.stress, units.pascal) if scale == "p_h" else (units.length, units.metre)
+            size = getattr(curves[0], scale) / one_unit
             for curve in members:
                 colour, h = colours[curve.ratio], curve.a_h / units.metre
                 dash = DASHES[frictions.index(curve.friction) % len(DASHES)]
@@ -187,7 +179,7 @@ def _against_thickness(
                     for x, y in zip(at, value, strict=True)
                 ]
             axes.set_ylabel(f"{NAMES.get(quantity) or f'${QUANTITY[quantity].tex}$'} [{unit}]")
-            beside(axes, size, f"over ${SCALE_NAMES[scale]}$")
+            _beside(axes, size, f"over ${scale}$".replace("delta", r"\delta"))
             axes.grid(True, linewidth=0.3, color="#cccccc")
             if heading:
                 axes.text(0.5, 0.97, heading, transform=axes.transAxes, ha="center", va="top")
@@ -222,7 +214,7 @@ def _mark(axes: Axes, h: Array, value: Array, source: str, colour: str) -> None:
     axes.plot(h, value, marker, color=colour, markerfacecolor="none", markersize=4, markeredgewidth=0.7)
 
 
-def beside(axes: Axes, size: float, label: str) -> None:
+def _beside(axes: Axes, size: float, label: str) -> None:
     """A second vertical axis for the values over ``size``."""
     second = axes.secondary_yaxis("right", functions=_over(size))
     second.set_ylabel(label)
@@ -343,12 +335,11 @@ def governing_figure(choices: Sequence[Choice], units: Units) -> list[Drawn]:
     Between the solved points, which are dots, each use of strength is read by monotone cubics in log h,
     then by straight lines in log E1/E2.
     """
-    grid = _map(choices)
-    if grid is None:
+    if len(choices) < 2:
         return []
     first = choices[0].judgements[0]
     modes, size = first.modes, first.curve.a_h / units.metre
-    over, ratio, use = grid
+    over, ratio, use = _map(choices)
     h, governing, largest = over * size, use.argmax(axis=0), use.max(axis=0)
     with sheet(78, len(modes), right=4) as figure:
         axes = figure.subplots(1, 1)
@@ -405,11 +396,9 @@ def pale(colour: str) -> tuple[float, float, float]:
     return (0.45 * r + 0.55, 0.45 * g + 0.55, 0.45 * b + 0.55)
 
 
-def _map(choices: Sequence[Choice]) -> tuple[Array, Array, Array] | None:
-    """h/a_h, E1/E2, uses of strength (modes, ratios, thicknesses) on a dense grid; None for one modulus."""
+def _map(choices: Sequence[Choice]) -> tuple[Array, Array, Array]:
+    """h/a_h, E1/E2, uses of strength (modes, ratios, thicknesses) on a dense grid."""
     members = sorted(choices, key=lambda one: one.judgements[0].curve.ratio)
-    if len(members) < 2:
-        return None
     h = np.geomspace(max(one.h[0] for one in members), min(one.h[-1] for one in members), 240)
     known = np.log([one.judgements[0].curve.ratio for one in members])
     ratio = np.exp(np.linspace(known[0], known[-1], 120))

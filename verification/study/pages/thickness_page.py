@@ -5,7 +5,6 @@ No number of the answer has more digits than its uncertainty supports; limits ar
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,15 +15,7 @@ from verification.page.source_labels import source_label
 from verification.study.choice.failure_criteria import MODES, Judged, judged
 from verification.study.choice.thickness_choice import DRAWN, Choice, End, Range, choice
 from verification.study.pages.contour_maps import contour_figures, nearest
-from verification.study.pages.study_assembly import (
-    Draw,
-    Written,
-    check_sections,
-    draw_sections,
-    failed_section,
-    inputs_section,
-    write_page,
-)
+from verification.study.pages.study_assembly import Draw, Written, common_sections, write_page
 from verification.study.pages.study_figures import (
     Drawn,
     contact_figure,
@@ -34,28 +25,14 @@ from verification.study.pages.study_figures import (
 )
 from verification.study.study_plan import Study
 from verification.study.study_table import read_columns
-from verification.study.thickness_curves import Curve, curves, differences
+from verification.study.thickness_curves import Curve, curves
 
 DIGITS = 2  # of a thickness, at most
 
 
-@dataclass(frozen=True)
-class Near:
-    """How far ``source`` is from the semi-analytical curve in ``mode`` at a checked thickness.
-
-    h : over a_h.   difference : |difference| over p_h.
-    """
-
-    source: str
-    mode: str
-    h: float
-    difference: float
-
-
-def near(judgement: Judged, h: float, mode: str) -> tuple[Near, ...]:
-    """The cross-checks of ``mode`` nearest to ``h`` over a_h, one for each source that has any."""
-    curve = judgement.curve
-    found = []
+def near(curve: Curve, h: float, mode: str) -> dict[str, tuple[float, float]]:
+    """By source the cross-check of ``mode`` nearest to ``h`` over a_h: its h, its |difference| over p_h."""
+    found = {}
     for source, marks in curve.marks.items():
         at, value = marks[mode]
         known = np.isin(at, curve.h) & np.isfinite(value)
@@ -63,8 +40,8 @@ def near(judgement: Judged, h: float, mode: str) -> tuple[Near, ...]:
             continue
         i = int(np.flatnonzero(known)[np.abs(np.log(at[known] / h)).argmin()])
         here = float(curve.stress[mode][np.flatnonzero(curve.h == at[i])[0]])
-        found.append(Near(source, mode, float(at[i]), abs(float(value[i]) - here)))
-    return tuple(found)
+        found[source] = float(at[i]), abs(float(value[i]) - here)
+    return found
 
 
 def rounded(value: float, uncertainty: float, upwards: bool | None = None) -> str:
@@ -159,30 +136,25 @@ def _share(found: Choice, end: End) -> str:
     return f"{100 * share:.0f} % of the failures there, "
 
 
-def checked_messages(choices: Sequence[Choice], units: Units) -> list[str]:
-    """For each modulus the cross-checks nearest to what is recommended, every source with its worst."""
-    return [message for one in choices if (message := _checked(one, units))]
-
-
-def _checked(choice: Choice, units: Units) -> str:
+def checked_message(choice: Choice, units: Units) -> str:
+    """The cross-checks nearest to what is recommended, every source with its worst; "" without any."""
     pairs = [*choice.ranges, choice.even]
     places = [(end.h, end.mode, end.friction) for pair in pairs for end in pair if end is not None]
     judgement, mode = choice.governing(choice.best)
     places.append((choice.best, mode, judgement.curve.friction))
-    by_friction = {j.curve.friction: j for j in choice.judgements}
-    found = [(by_friction[f], one) for h, mode, f in places for one in near(by_friction[f], h, mode)]
-    if not found:
+    curves = {j.curve.friction: j.curve for j in choice.judgements}
+    worst: dict[str, tuple[float, str]] = {}
+    for h, mode, f in places:
+        for source, (at, difference) in near(curves[f], h, mode).items():
+            if difference > worst.get(source, (-1.0, ""))[0]:
+                worst[source] = difference, f"{mode}, {_length(choice, at, units)}, f = {f:g}"
+    if not worst:
         return ""
-    parts = []
-    for source in dict.fromkeys(one.source for _, one in found):
-        j, one = max(
-            ((j, one) for j, one in found if one.source == source), key=lambda item: item[1].difference
-        )
-        stress = one.difference * j.curve.p_h / units.pascal
-        parts.append(
-            f"at most {stress:.1g} {units.stress} off the {source_label(source)} ({one.mode}, "
-            f"{_length(choice, one.h, units)}, f = {j.curve.friction:g})"
-        )
+    scale = judgement.curve.p_h / units.pascal
+    parts = [
+        f"at most {scale * difference:.1g} {units.stress} off the {source_label(source)} ({place})"
+        for source, (difference, place) in worst.items()
+    ]
     return (
         f"E1/E2 = {judgement.curve.ratio:.3g}: at the checked thicknesses nearest to these the governing "
         f"stresses are {' and '.join(parts)}."
@@ -199,12 +171,11 @@ def write_study_report(
     facts: Sequence[tuple[str, str]] = (),
     *,
     figures: bool = True,
-    maps: bool = True,
     drawing: Callable[[str], None] = lambda name: None,
 ) -> Written:
     """Report the ``table`` of ``study``: NAME.html, figures/NAME/*.pdf, .svg, .csv under ``folder``.
 
-    facts : more (name, value) pairs for the head of the page.   maps : solve for contour maps too.
+    facts : more (name, value) pairs for the head of the page.
     drawing : called with the name of each group of figures before it is drawn.
     Raises StoreError where the table cannot be read or the folder not written.
     """
@@ -223,19 +194,12 @@ def write_study_report(
             ("use", "Stress over strength", lambda: use_figures(choices, units)),
             ("governing", "Governing failure mode", lambda: governing_figure(choices, units)),
             ("stress", "Stress against thickness", lambda: stress_figures(found, units)),
+            ("contours", "In the x-z plane", lambda: _maps(study, found, failures)),
             ("contact", "The contact against thickness", lambda: contact_figure(found, units)),
         ]
-        if maps:
-            draws.insert(3, ("contours", "In the x-z plane", lambda: _maps(study, found, failures)))
-    drawings = draw_sections(draws, folder / "figures" / study.name, drawing)
     said = answers(choices, units)
-    sections = [
-        _preference(study, choices, said),
-        inputs_section(study),
-        *drawings,
-        *check_sections(differences(columns)),
-        *failed_section(failures),
-    ]
+    first = _preference(study, choices, said)
+    sections = [first, *common_sections(study, folder, draws, columns, failures, drawing)]
     solved = sum(c.h.size for c in every)
     lost = sum(len(c.failures) for c in every)
     points = ("points", f"{solved} solved" + (f", {lost} could not be" if lost else ""))
@@ -277,7 +241,7 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
     texts = [
         *(said if len(said) > 1 else []),
         study.criteria.description(),
-        *checked_messages(choices, units),
+        *filter(None, (checked_message(one, units) for one in choices)),
     ]
     parts = [*(Part(text) for text in texts), Part("", [table])]
     return Section("preferable", "Which thickness", [*parts, *_chances(study, choices)])

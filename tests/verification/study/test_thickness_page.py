@@ -23,7 +23,9 @@ def reported(folder):
     text = study_table.TEXT.replace("Made of formulas", "<script>alert(1)</script>")
     text += "[criteria.strength]\nsigma_xx_surface = 8e8\nvon_mises_substrate = 9e8\n"
     study = study_table.write(folder / "study.parquet", failed=(3,), text=text)
-    write_study_report(folder / "study.parquet", study, folder, maps=False)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(thickness_page, "_maps", lambda *_: [])
+        write_study_report(folder / "study.parquet", study, folder)
     return study
 
 
