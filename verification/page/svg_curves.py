@@ -144,7 +144,7 @@ def _draw_differences(
                 height = _logarithm(difference.uncertainty)
             axes.ring(difference.position[at], height[at])
     if cap is not None and cap > 0:
-        axes.level(log10(cap), CAP)
+        axes.line(np.array(span), np.full(2, log10(cap)), CAP)
     return axes
 
 

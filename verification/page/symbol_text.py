@@ -5,6 +5,7 @@ them, another SVG, a third plain Unicode.
 """
 
 import re
+from collections.abc import Callable
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -106,15 +107,20 @@ def _formula(of: dict[str, str]) -> list[Piece]:
     return [Piece(_GREEK.get(text, text), True)]
 
 
-@lru_cache(maxsize=4096)
-def _html(text: str) -> Markup:
+def html(text: str, escaped: Callable[[str], object]) -> str:
+    """HTML of ``text``, every piece of it ``escaped``."""
     written = []
     for piece in pieces(text):
-        inner = str(escape(piece.text))
+        inner = str(escaped(piece.text))
         inner = f"<i>{inner}</i>" if piece.italic else inner
         tag = {-1: "sub", 1: "sup"}.get(piece.level)
         written.append(f"<{tag}>{inner}</{tag}>" if tag else inner)
-    return Markup("".join(written))
+    return "".join(written)
+
+
+@lru_cache(maxsize=4096)
+def _html(text: str) -> Markup:
+    return Markup(html(text, escape))
 
 
 def typeset(text: object) -> Markup:

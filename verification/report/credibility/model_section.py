@@ -12,7 +12,7 @@ from verification.credibility.model_error import WORDS as NAMES
 from verification.evidence.assumption_maps import WORDS, AssumptionMap
 from verification.page.number_text import plain
 from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row, written
-from verification.page.svg_plot import level_map, tint
+from verification.page.svg_plot import Axes, drawing
 from verification.problem.array_types import Array
 from verification.report.report_material import Material
 from verification.sources.assumptions.contact_change import SCALARS
@@ -27,7 +27,7 @@ USUAL = {"nu": 0.3}  # coordinate of a panel, where the map has it
 
 
 def section(material: Material) -> Section | None:
-    """A conclusion with the reach of each assumption, then its maps; None without a record."""
+    """As ``parts``; None without a record."""
     record = material.evidence.maps
     if record is None or not record.maps:
         return None
@@ -125,13 +125,14 @@ def _part(one: AssumptionMap) -> Part:
         if np.isfinite(plane).any():
             name = NAMES.get(quantity, quantity)
             span = f"from {_percent(float(np.nanmin(plane)))} to {_percent(float(np.nanmax(plane)))}"
-            panels.append(Panel(name, _draw(x, y, plane, f"{one.title}: {name}"), span, ""))
+            panels.append(Panel(name, _draw(x, y, plane, f"{one.title}: {name}"), span))
     legend = [
-        (tint(COLOUR, 0.0), f"below {_percent(LEVELS[0])}"),
-        (tint("muted", NO_ANSWER), "no answer of the model"),
+        (_tint(COLOUR, 0.0), f"below {_percent(LEVELS[0])}"),
+        (_tint("muted", NO_ANSWER), "no answer of the model"),
     ]
     legend += [
-        (tint(COLOUR, shade), f"above {_percent(level)}") for level, shade in zip(LEVELS, SHADES, strict=True)
+        (_tint(COLOUR, shade), f"above {_percent(level)}")
+        for level, shade in zip(LEVELS, SHADES, strict=True)
     ]
     fixed = ", ".join(
         f"{WORDS[name]} = {at[name]:g}" for name in at if name in drawable and name not in (ACROSS, UP)
@@ -157,13 +158,25 @@ def _slice(one: AssumptionMap) -> dict[str, float]:
 
 def _draw(x: Array, y: Array, plane: Array, label: str) -> Markup:
     size = np.ma.masked_invalid(np.abs(plane))
+    axes = Axes((48.0, 5.0, 266.0, 207.5), (x[0], x[-1]), (y[0], y[-1]))
     known = np.where(np.ma.getmaskarray(size), 0.0, 1.0)
-    bands = zip(pairwise((*LEVELS, 1e9)), SHADES, strict=True)
-    areas = [(known, -1.0, 0.999, "muted", NO_ANSWER)]
-    areas += [(size, low, high, COLOUR, shade) for (low, high), shade in bands]
-    contours = [(size, level, _percent(level)) for level in LEVELS]
-    ticks = (_ticks(THICKNESSES, x), _ticks((0.1, 0.25, 1, 4, 10), y))
-    return level_map(label, x, y, areas, contours, ticks, (WORDS[ACROSS], WORDS[UP]))
+    axes.filled(x, y, known, -1.0, 0.999, "muted", NO_ANSWER)
+    for (low, high), shade in zip(pairwise((*LEVELS, 1e9)), SHADES, strict=True):
+        axes.filled(x, y, size, low, high, COLOUR, shade)
+    for level in LEVELS:
+        if size.min() < level < size.max():
+            axes.contour(x, y, size, level, _percent(level))
+    axes.ticks(_ticks(THICKNESSES, x), _ticks((0.1, 0.25, 1, 4, 10), y), WORDS[ACROSS])
+    axes.text(x[0], y[-1], WORDS[UP], by=(4, 13))
+    return drawing(320, 250, f"{label} over {WORDS[ACROSS]} and {WORDS[UP]}", axes)
+
+
+def _tint(colour: str, shade: float) -> Markup:
+    """A small piece of a tinted area, for the legend."""
+    return Markup(
+        '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true"><rect x="1" y="0" width="34" height="10" '
+        'class="f-{} s-muted" stroke-width="1" fill-opacity="{}"/></svg>'
+    ).format(colour, shade)
 
 
 def _ticks(values: tuple[float, ...], shown: Array) -> list[tuple[float, str]]:
