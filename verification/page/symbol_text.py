@@ -148,10 +148,6 @@ def drawn(text: str) -> Markup:
 def unicode(text: str) -> str:
     """``text`` in plain Unicode, for names that a screen reader or a tooltip gives."""
     return "".join(
-        piece.text.translate(_SUPERSCRIPT)
-        if piece.level > 0
-        else f"_{piece.text}"
-        if piece.level < 0
-        else piece.text
+        piece.text.translate(_SUPERSCRIPT) if piece.level > 0 else "_" * -piece.level + piece.text
         for piece in pieces(text)
     )

@@ -12,12 +12,11 @@ from verification.page.page_parts import Panel
 from verification.page.source_labels import pair_label, pair_style, source_label, source_style, symbol_of
 from verification.page.svg_curves import Curve, Difference, draw
 from verification.page.svg_plot import MARKS
-from verification.problem.line_profile import ON_BALL
+from verification.problem.line_profile import ON_BALL, coordinate_of
 from verification.problem.quantity import QUANTITIES
 from verification.report.report_words import stated
 from verification.report.tables.case_lookup import (
     contact_radius,
-    coordinate,
     difference,
     reference_source,
     scale,
@@ -133,7 +132,7 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
         curves,
         differences,
         label=f"{symbol_of(quantity)} on {line} by every source, with differences",
-        coordinate=f"{coordinate(line)} / a_h",
+        coordinate=f"{coordinate_of(line)} / a_h",
         cap=cap,
         unjudged=zones,
         data=f'data-quantity="{escape(quantity)}" data-line="{escape(line)}"',

@@ -10,14 +10,13 @@ from verification.judging.verdict import Claim
 from verification.page.number_text import factor, plain, scientific
 from verification.page.page_parts import Cell, Part, Section, Table, number, row, tally, words
 from verification.page.source_labels import source_label, symbol_of
+from verification.problem.line_profile import ON_BALL
 from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.report.report_material import Material
 from verification.report.report_words import stated
 from verification.report.tables.case_lookup import (
-    GROUPS,
     case_cell,
     difference,
-    group_of,
     judged,
     reference_source,
     sources_with_profiles,
@@ -25,6 +24,8 @@ from verification.report.tables.case_lookup import (
 from verification.running.case_result import CaseResult
 from verification.sources.source_registry import METHODS, REFERENCES
 
+# Columns of lines in the overview.
+GROUPS = ("surface", "axis", "interfaces", "off plane")
 # Ratio of stated to true error below which an estimate counts as wrong.
 TOO_SMALL = 0.5
 # Share of quantities whose true error an uncertainty must cover, the level at which it is usually stated.
@@ -110,14 +111,14 @@ def _accuracy(result: CaseResult, claim: Claim, source: str, exact: str) -> Accu
 
 def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], source: str) -> Table:
     """The errors of one method over all cases, the worst quantity of each group; None where there is none."""
-    columns = [*SCALARS, *SLOPES, *PEAKS, *GROUPS[1:]]
+    columns = [*SCALARS, *SLOPES, *PEAKS, *GROUPS]
     rows = []
     for result in results:
         found = [item for item in accuracies(result) if item.source == source]
         if not found:
             continue
         cells = [
-            _overview_cell([i for i in found if name in (i.quantity, group_of(i.line))]) for name in columns
+            _overview_cell([i for i in found if name in (i.quantity, _group_of(i.line))]) for name in columns
         ]
         rows.append(row(case_cell(result, f"#{anchors[result]}-comparisons"), *cells))
     return Table(
@@ -127,6 +128,13 @@ def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult
         rows,
         css="overview",
     )
+
+
+def _group_of(line: str) -> str:
+    line = line.removeprefix(ON_BALL)
+    if line.startswith("interface"):
+        return "interfaces"
+    return "off plane" if line in ("oblique", "oblique surface") else line
 
 
 def _overview_cell(found: Sequence[Accuracy]) -> Cell:

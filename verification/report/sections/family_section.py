@@ -14,12 +14,11 @@ from verification.page.number_text import plain
 from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row, written
 from verification.page.source_labels import source_label
 from verification.page.svg_plot import HUGE, Axes, drawing, round_ticks
-from verification.problem.line_profile import Profile
+from verification.problem.line_profile import Profile, coordinate_of
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.report.figures.line_panels import FIRST, swatch
 from verification.report.report_material import Material
 from verification.report.tables.case_lookup import (
-    coordinate,
     layers,
     reference_source,
     scalar,
@@ -102,7 +101,7 @@ def _gallery(members: Members) -> Gallery:
         for ratio, (profile, result) in of.items():
             what = f"E1/E2 = {plain(ratio, 3)}, {line}"
             x, y = profile.position / scale(result, "a_h"), profile.value / scale(result, "p_h")
-            columns.append([f"{coordinate(line)} / a_h, {what}", *(f"{v:.6g}" for v in x)])
+            columns.append([f"{coordinate_of(line)} / a_h, {what}", *(f"{v:.6g}" for v in x)])
             columns.append([f"{quantity} / p_h, {what}", *(f"{v:.6g}" for v in y)])
     return Gallery(legend, panels, caption, written(list(zip_longest(*columns, fillvalue=""))))
 
@@ -138,7 +137,7 @@ def _draw(curves: dict[float, tuple[Profile, CaseResult]], styles: dict[float, S
     )
     margin = 0.09 * (high - low)
     axes = Axes(BOX, (left, right), (low - margin, high + margin))
-    axes.ticks(round_ticks(left, right, 6), round_ticks(low, high, 6), f"{coordinate(line)} / a_h")
+    axes.ticks(round_ticks(left, right, 6), round_ticks(low, high, 6), f"{coordinate_of(line)} / a_h")
     for ratio, (x, y) in scaled.items():
         axes.line(x, y, styles[ratio])
     return drawing(

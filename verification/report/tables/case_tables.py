@@ -13,9 +13,10 @@ from verification.page.page_parts import Cell, Table, number, outcome_cell, row,
 from verification.page.source_labels import OUTCOMES, pair_label, row_css, source_label, symbol_of
 from verification.problem.coated_contact import BALL, FLAT
 from verification.problem.indenter_shape import SHAPES
+from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import BALL_PEAKS, PEAKS, QUANTITIES, SCALARS, SLOPES, unit_of
 from verification.report.report_words import stated
-from verification.report.tables.case_lookup import INDENTERS, coordinate, layers, scalar, scale
+from verification.report.tables.case_lookup import INDENTERS, layers, scalar, scale
 from verification.running.case_result import CaseResult
 
 NO_RESULT = Cell("no result", css="no-result")
@@ -148,7 +149,7 @@ def failing_table(result: CaseResult, a_h: float, most: int) -> Table:
 
     def where(claim: Claim, verdict: Verdict) -> Cell:
         known = verdict.worst is not None and claim.line != "contact" and a_h
-        text = f"{coordinate(claim.line)} = {plain((verdict.worst or 0.0) / a_h, 3)} a_h" if known else ""
+        text = f"{coordinate_of(claim.line)} = {plain((verdict.worst or 0.0) / a_h, 3)} a_h" if known else ""
         return Cell(text, verdict.worst)
 
     return table_of(
