@@ -14,7 +14,7 @@ from verification.problem.coated_contact import BALL
 from verification.report.figures.field_pictures import pictures
 from verification.report.figures.line_panels import case_figures
 from verification.report.figures.problem_sketch import sketch
-from verification.report.figures.verdict_strips import Item, axis_of, draw_axis, draw_strip, ordered
+from verification.report.figures.verdict_strips import axis_of, draw_axis, draw_strip, items_of, ordered
 from verification.report.report_material import Material
 from verification.report.sections import invariants_section, published_section
 from verification.report.tables.case_lookup import contact_radius, divisor, layers, lines, scale, slug
@@ -31,9 +31,6 @@ from verification.report.tables.case_tables import (
 from verification.report.tables.line_csv import line_csv
 from verification.running.case_result import CaseResult
 
-# A failed source fails every comparison; the list before the figures stays short.
-MOST_FAILING = 6
-
 
 def contents(material: Material, result: CaseResult) -> dict[str, Any]:
     """What the template of a case shows."""
@@ -46,7 +43,7 @@ def contents(material: Material, result: CaseResult) -> dict[str, Any]:
         "facts": facts(result),
         "failures": [(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
         "layers": [layer_table(result), *([layer_table(result, BALL)] if layers(result, BALL) else [])],
-        "failing": failing_table(result, scale(result, "a_h"), MOST_FAILING),
+        "failing": failing_table(result),
         "budget": budget_table(result),
         "diagnostics": diagnostics_table(result),
     }
@@ -110,7 +107,7 @@ def summary(result: CaseResult) -> str:
 
 def _strips(result: CaseResult, anchor: str) -> dict[str, Any] | None:
     """All comparisons of a case, a strip for each line."""
-    items = [Item(claim, verdict) for claim, verdict in result.verdicts]
+    items = items_of(result)
     if not items:
         return None
     axis = axis_of(items)
@@ -141,7 +138,7 @@ def data(material: Material) -> dict[str, Any]:
                 list(OUTCOMES).index(item.verdict.outcome),
                 parts.setdefault(dominating_parameter(result, item.claim, item.verdict), len(parts)),
             ]
-            for item in ordered([Item(claim, verdict) for claim, verdict in result.verdicts])
+            for item in ordered(items_of(result))
         ]
         scales = [float(scale(result, name)) for name in ("a_h", "p_h", "delta_h")]
         scales += [float(divisor(result, name, 1.0)) for name in ("sigma_xx", "u_x")]

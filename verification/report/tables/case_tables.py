@@ -19,6 +19,8 @@ from verification.report.report_words import stated
 from verification.report.tables.case_lookup import INDENTERS, layers, scalar, scale
 from verification.running.case_result import CaseResult
 
+# A failed source fails every comparison; the list before the figures stays short.
+MOST_FAILING = 6
 NO_RESULT = Cell("no result", css="no-result")
 _FACTS = {
     "pressure": ("uniform pressure q", "Pa"),
@@ -142,10 +144,11 @@ def comparison_table(result: CaseResult) -> Table:
     )
 
 
-def failing_table(result: CaseResult, a_h: float, most: int) -> Table:
-    """The comparisons that do not agree, the worst first; ``most`` of them."""
+def failing_table(result: CaseResult) -> Table:
+    """The comparisons that do not agree, the worst first; ``MOST_FAILING`` of them."""
+    a_h = scale(result, "a_h")
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
-    more = f" The worst {most} of {len(bad)}." if len(bad) > most else ""
+    more = f" The worst {MOST_FAILING} of {len(bad)}." if len(bad) > MOST_FAILING else ""
 
     def where(claim: Claim, verdict: Verdict) -> Cell:
         known = verdict.worst is not None and claim.line != "contact" and a_h
@@ -154,7 +157,7 @@ def failing_table(result: CaseResult, a_h: float, most: int) -> Table:
 
     return table_of(
         f"Comparisons that do not agree.{more}",
-        sorted(bad, key=lambda item: _badness(item[1]))[:most],
+        sorted(bad, key=lambda item: _badness(item[1]))[:MOST_FAILING],
         [
             ("verdict", lambda item: outcome_cell(item[1].outcome)),
             ("quantity", lambda item: Cell(symbol_of(item[0].quantity), note=item[0].why)),
