@@ -39,9 +39,8 @@ _FACTS = {
 def facts(result: CaseResult) -> list[tuple[str, str]]:
     """(name, value) of each parameter and each Hertz scale of a problem."""
     given = {"friction": 0.0} | result.problem
-    indenter = given.get("indenter")
     texts, found = _FACTS, []
-    if indenter:
+    if indenter := given.get("indenter"):
         # all numbers but that of the lobes are lengths
         shape, numbers = indenter
         shown = [
@@ -208,7 +207,7 @@ def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> 
     return f"{source_label(source)}: {max(parts, key=lambda item: item[1])[0]}"
 
 
-def budget_table(result: CaseResult) -> Table | None:
+def budget_table(result: CaseResult) -> Table:
     """Uncertainty budget: a row for each numerical parameter of each method."""
     rows = []
     for source in result.sources:
@@ -216,13 +215,15 @@ def budget_table(result: CaseResult) -> Table | None:
             parts = [U for q, _, U in source.budget if q == quantity]
             largest = max(filter(isfinite, parts), default=0.0)
             dominant = "dominant" if value == largest > 0 and len(parts) > 1 else ""
+            found = scalar(result, quantity, source.source)
+            size = abs(found[0]) if found else scale(result, "p_h")
             rows.append(
                 row(
                     source_label(source.source),
                     quantity,
                     Cell(name, css=dominant),
                     Cell(engineering(value, unit_of(quantity), 2), value),
-                    Cell(scientific(_relative(result, source.source, quantity, value)), value),
+                    Cell(scientific(value / size if size else None), value),
                     Cell("◀ dominates" if dominant else "", css="dominant"),
                 )
             )
@@ -234,13 +235,7 @@ def budget_table(result: CaseResult) -> Table | None:
     )
 
 
-def _relative(result: CaseResult, source: str, quantity: str, value: float) -> float | None:
-    found = scalar(result, quantity, source)
-    size = abs(found[0]) if found else scale(result, "p_h")
-    return value / size if size else None
-
-
-def diagnostics_table(result: CaseResult) -> Table | None:
+def diagnostics_table(result: CaseResult) -> Table:
     """Diagnostics of each source: iterations, residuals, unknowns."""
     rows = [
         row(source_label(source.source), name.replace("_", " "), _shown(value))
@@ -256,7 +251,7 @@ def _shown(value: Any) -> str:
     if isinstance(value, list | tuple):
         if len(value) > 6:
             return f"{len(value)} values, first {_shown(value[0])}, last {_shown(value[-1])}"
-        return ", ".join(_shown(item) for item in value)
+        return ", ".join(map(_shown, value))
     if isinstance(value, dict):
         return ", ".join(f"{key} {_shown(item)}" for key, item in value.items())
     text = str(value)
