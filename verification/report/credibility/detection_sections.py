@@ -84,7 +84,9 @@ def faults_section(record: Record) -> Section:
     if record.controls:
         text = "Negative controls, the same trials with nothing planted: any detection is a false alarm."
         parts.append(Part(text, [_controls(record.controls)]))
-    parts.append(Part(_explained(record), title="Faults against checks"))
+    columns = "; ".join(f"“{title}”: {text}" for title, text in COLUMNS.items())
+    explained = stated("cells", blind=sum(map(_only_coated, record.rows)), columns=columns)
+    parts.append(Part(explained, title="Faults against checks"))
     parts += [
         Part("", [_matrix(rows, title)], folded=f"{title}, {len(rows)} faults")
         for title, rows in _groups(record)
@@ -114,22 +116,6 @@ def faults_page(record: Record) -> str:
         facts,
         [faults_section(record)],
         "Written by coatcheck faults.",
-    )
-
-
-def _explained(record: Record) -> str:
-    columns = "; ".join(f"“{title}”: {text}" for title, text in COLUMNS.items())
-    blind = sum(_only_coated(row) for row in record.rows)
-    first = (
-        f"{blind} faults pass every comparison of the uncoated cases, including Hertz and Hamilton, and are "
-        "detected on coated cases only. "
-        if blind
-        else ""
-    )
-    return (
-        f"{first}Each cell counts the checks that do not pass, of those that were made: ✓ a disagreement, "
-        "? an uncertainty beyond its cap, ∅ no result. An empty cell: not checked, since the "
-        f"fault does not affect it. The columns: {columns}."
     )
 
 
