@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.judging.verdict import Claim
+from verification.judging.verdict import Claim, Comparison
 from verification.page.page_parts import Cell
 from verification.problem.coated_contact import BALL, FLAT
 from verification.problem.line_profile import Profile, coordinate_of
@@ -102,10 +102,8 @@ def difference(
     if first is None or second is None or not np.array_equal(first.position, second.position):
         return None
     reach = divisor(result, first.quantity, second.value[0])
-    gap = np.abs(first.value - second.value) / reach
-    if first.uncertainty is None or second.uncertainty is None:
-        return gap, None
-    return gap, (first.uncertainty + second.uncertainty) / reach
+    comparison = Comparison(first, second, float(reach), np.ones(first.position.shape, dtype=bool))
+    return np.abs(comparison.difference), comparison.uncertainty
 
 
 def divisor(result: CaseResult, quantity: str, value: Any) -> np.float64:
