@@ -17,7 +17,7 @@ from verification.report.figures.problem_sketch import sketch
 from verification.report.figures.verdict_strips import axis_of, draw_axis, draw_strip, items_of, ordered
 from verification.report.report_material import Material
 from verification.report.sections import invariants_section, published_section
-from verification.report.tables.case_lookup import contact_radius, divisor, layers, lines, scale, slug
+from verification.report.tables.case_lookup import contact_radius, divisor, layers, scale, slug
 from verification.report.tables.case_tables import (
     budget_table,
     comparison_table,
@@ -62,7 +62,7 @@ def contents(material: Material, result: CaseResult) -> dict[str, Any]:
         "model": material.evidence.models.get(result.name),
         "files": [
             (line, line_csv(result, line), f"{file}-{slug(line)}.csv")
-            for line in (*(("contact",) if result.profiles else ()), *lines(result))
+            for line in dict.fromkeys(profile.line for profile in result.profiles)
         ],
         "broken": invariants_section.invariant_table(broken),
         "invariants": invariants_section.invariant_table(result.invariants),
@@ -122,7 +122,7 @@ def _strips(result: CaseResult, anchor: str) -> dict[str, Any] | None:
 def data(material: Material) -> dict[str, Any]:
     """What the script of the page knows of the comparisons: names once, then rows of indices and numbers."""
     quantities: dict[str, int] = {}
-    lines_: dict[str, int] = {}
+    lines: dict[str, int] = {}
     pairs: dict[tuple[str, str], int] = {}
     parts: dict[str, int] = {}
     cases = {}
@@ -130,7 +130,7 @@ def data(material: Material) -> dict[str, Any]:
         rows = [
             [
                 quantities.setdefault(item.claim.quantity, len(quantities)),
-                lines_.setdefault(item.claim.line, len(lines_)),
+                lines.setdefault(item.claim.line, len(lines)),
                 pairs.setdefault(item.claim.between, len(pairs)),
                 _short(item.difference),
                 _short(item.uncertainty),
@@ -151,7 +151,7 @@ def data(material: Material) -> dict[str, Any]:
             for name in sources
         },
         "quantities": [[name, typeset(symbol_of(name))] for name in quantities],
-        "lines": list(lines_),
+        "lines": list(lines),
         "pairs": [[*pair, pair_style(pair).colour] for pair in pairs],
         "parts": list(parts),
         "agrees": list(OUTCOMES).index(Outcome.AGREES),

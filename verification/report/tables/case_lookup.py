@@ -18,11 +18,6 @@ from verification.sources.source_registry import METHODS, REFERENCES
 INDENTERS = {"ellipsoid": "ellipsoid", "asperities": "pair of asperities", "lobes": "lobed sphere"}
 
 
-def lines(result: CaseResult) -> tuple[str, ...]:
-    """The lines with profiles, in the order in which they were sampled; without the scalars."""
-    return tuple(dict.fromkeys(p.line for p in result.profiles if p.line != "contact"))
-
-
 def sources_with_profiles(result: CaseResult) -> tuple[str, ...]:
     """The sources that gave numbers, in the order of the case; a failed one gave none."""
     found = {profile.source for profile in result.profiles}
