@@ -95,10 +95,10 @@ def summary(result: CaseResult) -> str:
     broken = sum(one.outcome is not Outcome.AGREES for one in result.invariants)
     total, count = len(result.verdicts), len(result.invariants)
     text = f"{bad} of {total} comparisons do not agree" if bad else f"All {total} comparisons agree"
-    if count:
-        text += (
-            f", {broken} of {count} invariants do not hold" if broken else f", all {count} invariants hold"
-        )
+    if broken:
+        text += f", {broken} of {count} invariants do not hold"
+    elif count:
+        text += f", all {count} invariants hold"
     gaps = [v.difference for _, v in result.verdicts if v.difference is not None]
     if gaps:
         text += f"; the largest difference is {scientific(max(gaps))}"
