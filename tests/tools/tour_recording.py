@@ -3,6 +3,7 @@
 import json
 import os
 import resource
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -11,7 +12,7 @@ from pathlib import Path
 
 from verification.commands.common.terminal import print_out
 from verification.manual.tour_output import shown_lines, variables
-from verification.manual.tour_session import COMMANDS, RECORD, split
+from verification.manual.tour_session import COMMANDS, RECORD
 from verification.running.provenance import commit, hardware
 
 
@@ -22,7 +23,7 @@ def tour() -> int:
         for words in COMMANDS:
             begin = _processor_seconds()
             done = subprocess.run(
-                [sys.executable, "-m", "verification.cli", *split(words)],
+                [sys.executable, "-m", "verification.cli", *shlex.split(words)],
                 cwd=work,
                 env=variables() | {"OMP_NUM_THREADS": "1"},
                 capture_output=True,

@@ -9,7 +9,7 @@ width : a_h/R;   friction : f;   ball : share of the ball in the contact's compl
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from functools import cached_property
+from functools import cached_property, partial
 from math import prod
 from pathlib import Path
 
@@ -149,8 +149,6 @@ class AssumptionMap:
             values = next((axis.values for axis in self.axes if axis.name == "thickness"), (1.0,))
             any_thickness = min(values, key=lambda value: abs(np.log(value)))
             places = tuple(replace(place, thickness=any_thickness) for place in places)
-        if "nu" in self.independent_of:
-            places = places[:1]
         found = np.array([self._at_place(place) for place in places])
         low, high = found[:, 0].min(axis=0), found[:, 0].max(axis=0)
         value, uncertainty = (low + high) / 2, found[:, 1].max(axis=0) + (high - low) / 2
@@ -167,14 +165,13 @@ class AssumptionMap:
         return one, other
 
     @property
-    def driver(self) -> int | None:
-        """Index of the axis along which the change grows; None where no rate is stated."""
-        return next((i for i, axis in enumerate(self.axes) if any(axis.rates)), None)
+    def driver(self) -> int:
+        """Index of the axis along which the change grows, the one with rates."""
+        return next(i for i, axis in enumerate(self.axes) if any(axis.rates))
 
     @cached_property
     def largest(self) -> Array:
         """Largest magnitude with its uncertainty at each value of the ``driver``, (quantities, values)."""
-        assert self.driver is not None
         size = np.moveaxis(np.abs(self.change) + self.uncertainty, 1 + self.driver, 1)
         flat = np.where(np.isnan(size), -np.inf, size).reshape(*size.shape[:2], -1).max(axis=-1)
         return np.where(np.isinf(flat), np.nan, flat)
@@ -184,7 +181,6 @@ class AssumptionMap:
 
         By powers between the values, below the first by its rate; None where it is above the last.
         """
-        assert self.driver is not None
         axis, size = self.axes[self.driver], self.largest[quantity]
         above = np.flatnonzero(size > level)
         if not above.size:
@@ -195,34 +191,24 @@ class AssumptionMap:
         share = np.log(level / size[i - 1]) / np.log(size[i] / size[i - 1])
         return float(axis.values[i - 1] * (axis.values[i] / axis.values[i - 1]) ** share)
 
-    def plane(
-        self, across: str, up: str, at: Mapping[str, float], refined: int = 6
-    ) -> tuple[Array, Array, Array]:
-        """Coordinates and changes (quantities, up, across) of the map with the others ``at`` nodes.
+    def plane(self, at: Mapping[str, float]) -> tuple[Array, Array, Array]:
+        """Thicknesses, ratios and changes (quantities, ratios, thicknesses) with the others ``at`` nodes.
 
-        refined : points a step of either axis, linear between the nodes.
+        Linear between the nodes, six points a step of either axis.
         """
-        names = [axis.name for axis in self.axes]
-        picked = tuple(
-            slice(None) if axis.name in (across, up) else axis.values.index(at[axis.name])
-            for axis in self.axes
-        )
+        picked = [
+            slice(None) if axis.name not in at else axis.values.index(at[axis.name]) for axis in self.axes
+        ]
         table = self.change[(slice(None), *picked)]
-        if names.index(across) < names.index(up):
-            table = np.swapaxes(table, 1, 2)
-        lines = []
-        for name in (across, up):
-            nodes = self.axes[names.index(name)].nodes
-            x = np.interp(np.arange((nodes.size - 1) * refined + 1) / refined, np.arange(nodes.size), nodes)
-            weights = np.zeros((x.size, nodes.size))
-            for row, value in zip(weights, x, strict=True):
-                for i, weight in _window(nodes, float(value), 2).items():
-                    row[i] = weight
-            lines.append((x, weights))
-        (x, along), (y, over) = lines
-        held = np.isfinite(table)
-        plane = over @ np.where(held, table, 0.0) @ along.T
-        return x, y, np.where(over @ held @ along.T > 1 - 1e-9, plane, np.nan)
+        by_name = {axis.name: axis.nodes for axis in self.axes}
+        refined = []
+        for along, name in ((2, "thickness"), (1, "ratio")):
+            nodes = by_name[name]
+            x = np.interp(np.arange(6 * nodes.size - 5) / 6, np.arange(nodes.size), nodes)
+            table = np.apply_along_axis(partial(np.interp, x, nodes), along, table)
+            refined.append(x)
+        x, y = refined
+        return x, y, table
 
     def _at_place(self, place: Place) -> tuple[Array, Array]:
         frictionless = next((axis.values == (0.0,) for axis in self.axes if axis.name == "friction"), False)
@@ -250,11 +236,9 @@ class AssumptionMap:
     def _scales(self) -> Array:
         """What the changes vanish with, at every node."""
         total = np.ones_like(self.change)
-        for j, axis in enumerate(self.axes):
+        for j, axis in enumerate(self.axes, start=1):
             along = np.stack([self._scale(axis, value) for value in axis.values], axis=1)
-            total *= along.reshape(
-                [len(self.quantities)] + [-1 if i == j else 1 for i in range(len(self.axes))]
-            )
+            total *= np.expand_dims(along, [i for i in range(1, total.ndim) if i != j])
         return total
 
     @staticmethod

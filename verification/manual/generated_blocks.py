@@ -4,7 +4,7 @@ Every number comes from the baseline or a record of this version.
 """
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from datetime import datetime
 from pathlib import Path
 
@@ -74,11 +74,11 @@ def published_counts() -> str:
     rows = []
     for path in published_cases().values():
         case = read_published(path)
-        counted = sum(int(item.counted.sum()) for item in case.columns)
         values = sum(len(item.text) for item in case.columns)
-        departed = sum(int((item.departure != 0).sum()) for item in case.columns)
+        counted = sum(item.counted.sum() for item in case.columns)
+        departed = sum((item.departure != 0).sum() for item in case.columns)
         name = f"[{text(case.title)}](/published/{case.name}.md)"
-        rows.append([name, str(case.citation["year"]), str(values), str(counted), str(departed)])
+        rows.append([name, *map(str, (case.citation["year"], values, counted, departed))])
     total = ["all", "", *(str(sum(int(row[i]) for row in rows)) for i in (2, 3, 4))]
     head = ["case", "year", "values", "counted", "departures"]
     return table(head, [*rows, total], 1)
@@ -119,29 +119,24 @@ def invariants() -> str:
 def fault_score() -> str:
     """Planted faults: how many are caught, by group, and those that are not."""
     record = read_record(RECORDS)
-    if record is None:
-        return "No record of planted faults is part of this version."
+    assert record is not None
     return paragraphs(part for part in faults_section(record).parts if not part.title)
 
 
 def false_alarms() -> str:
     """Verdicts other than AGREES on random problems without an error."""
     record = alarm_record.read_record(RECORDS)
-    if record is None:
-        return "No record of false alarms is part of this version."
-    parts = [
+    assert record is not None
+    text = (
         f"{_day(record.started)}: {len(record.alarms)} false alarms in {record.comparisons} comparisons and "
         f"{record.invariants} invariants of {record.problems} random problems (seed {record.seed}), of which "
         f"{record.agreeing} agree throughout."
+    )
+    rows = [
+        [SOURCES[r.source].label, str(r.values), f"{r.within:.1%}", f"{r.median:.3g}"] for r in record.ratios
     ]
-    if record.ratios:
-        rows = [
-            [SOURCES[r.source].label, str(r.values), f"{r.within:.1%}", f"{r.median:.3g}"]
-            for r in record.ratios
-        ]
-        head = ["method", "values", "error within $U$", "median of $U$ over error"]
-        parts.append(table(head, rows, 1))
-    return "\n\n".join(parts)
+    head = ["method", "values", "error within $U$", "median of $U$ over error"]
+    return f"{text}\n\n{table(head, rows, 1)}"
 
 
 def real_guests() -> str:
@@ -166,8 +161,7 @@ def more_pages() -> str:
 def enclosures() -> str:
     """Every enclosed problem with the middle of its bounds, rounded to twelve digits."""
     record = read_enclosures(RECORDS)
-    if record is None:
-        return "There is no record."
+    assert record is not None
     rows = []
     for one in record.enclosures:
         problem = one.problem
@@ -178,19 +172,13 @@ def enclosures() -> str:
         values = [f"{b.middle / scale:.12f}" for b, scale in zip(one.bounds, scales, strict=False)]
         width = scientific(max(b.width for b in one.bounds), 1)
         rows.append([f"`{one.name}`", layers or "none", f"{one.substrate[1]:g}", *values, width])
-    head = [
-        "problem",
-        r"layers $(E/E_s, \nu, h/a_h)$",
-        r"$\nu_s$",
-        "$a/a_h$",
-        r"$\delta/\delta_h$",
-        "$p/p_h$",
-    ]
+    head = ["problem", r"layers $(E/E_s, \nu, h/a_h)$", r"$\nu_s$"]
+    head += ["$a/a_h$", r"$\delta/\delta_h$", "$p/p_h$", "width"]
     return (
         f"Made {_day(record.started)}, commit {record.commit or 'unknown'}, on {record.machine}, in "
         f"{record.seconds:.0f} s with python-flint {record.versions.get('python-flint', 'unknown')}. "
         "$E_s$, $\\nu_s$ of the substrate; $p$ on the axis; the largest relative width of all values of the "
-        "problem, $\\sigma_{xx}$ included.\n\n" + table([*head, "width"], rows, 1)
+        "problem, $\\sigma_{xx}$ included.\n\n" + table(head, rows, 1)
     )
 
 
@@ -205,7 +193,7 @@ def _day(when: str) -> str:
     return datetime.fromisoformat(when).date().isoformat()
 
 
-_ALL: Sequence[Callable[[], str]] = (
+_ALL: tuple[Callable[[], str], ...] = (
     headline,
     totals,
     published_counts,

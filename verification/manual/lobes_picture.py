@@ -2,6 +2,7 @@
 
 import io
 from collections.abc import Sequence
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -54,25 +55,12 @@ def _drawn(rows: Sequence[tuple[str, Array]], x: Array, y: Array) -> Figure:
     for axes, (label, values) in zip(panels, rows, strict=True):
         axes[0].set_ylabel(f"{label}\ny [um]")
         for panel, field, (_, unit, colours) in zip(axes, values, COLUMNS, strict=True):
-            apart = label == "difference"
-            largest = np.abs(field).max() * unit
-            limits = {"vmin": -largest, "vmax": largest} if apart else {}
-            shown = panel.pcolormesh(
-                x,
-                y,
-                field * unit,
-                cmap="RdBu_r" if apart else colours,
-                rasterized=True,
-                **limits,
-            )
-            panel.contour(
-                x,
-                y,
-                pressure,
-                levels=[1e-3 * pressure.max()],
-                colors="black",
-                linewidths=0.8,
-            )
+            style: dict[str, Any] = {"cmap": colours}
+            if label == "difference":
+                largest = np.abs(field).max() * unit
+                style = {"cmap": "RdBu_r", "vmin": -largest, "vmax": largest}
+            shown = panel.pcolormesh(x, y, field * unit, rasterized=True, **style)
+            panel.contour(x, y, pressure, levels=[1e-3 * pressure.max()], colors="black", linewidths=0.8)
             panel.set_aspect("equal")
             figure.colorbar(shown, ax=panel, shrink=0.9)
     for panel in panels[-1]:

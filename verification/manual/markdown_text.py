@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from markupsafe import Markup
 
 from verification.page.page_parts import Part, Table
-from verification.page.symbol_text import pieces
+from verification.page.symbol_text import html
 from verification.problem.quantity import QUANTITIES
 
 
@@ -32,20 +32,13 @@ def typeset(words: str) -> str:
     """``words`` of a report, their symbols as HTML; what is ``Markup`` already stays as it is."""
     if isinstance(words, Markup):
         return str(words)
-    written = []
-    for piece in pieces(words):
-        inner = f"<i>{text(piece.text)}</i>" if piece.italic else text(piece.text)
-        tag = {-1: "sub", 1: "sup"}.get(piece.level)
-        written.append(f"<{tag}>{inner}</{tag}>" if tag else inner)
-    return "".join(written)
+    return html(words, text)
 
 
 def shown(found: Table) -> str:
     """A table of a report under its caption."""
-    over = [title for title, count in found.groups for _ in range(count)] or [""] * len(found.columns)
-    heads = [f"{group}: {head}" if group else head for group, head in zip(over, found.columns, strict=True)]
+    heads = [typeset(head).replace("|", "\\|") for head in found.heads]
     rows = [[typeset(cell.text) for cell in (row.head, *row.cells)] for row in found.rows]
-    heads = [typeset(head).replace("|", "\\|") for head in heads]
     return f"{typeset(found.caption)}\n\n{table(heads, rows, 1)}"
 
 

@@ -26,9 +26,8 @@ def picture() -> bytes:
 
 @cache
 def _run() -> tuple[str, bytes]:
-    page = re.sub(
-        r" \\\n +", " ", (SOURCE / "tour.md").read_text(encoding="utf-8")
-    )  # each command on one line
+    page = (SOURCE / "tour.md").read_text(encoding="utf-8")
+    page = re.sub(r" \\\n +", " ", page)  # each command on one line
     found = re.search(r"^coatcheck (solve --ball .+)$", page, re.MULTILINE)
     assert found, "the tour has no line that begins with coatcheck solve --ball"
     words = [word.replace(".png", ".svg") for word in shlex.split(found[1])]
@@ -36,10 +35,10 @@ def _run() -> tuple[str, bytes]:
         return transcript(words, Path(work)), (Path(work) / "stresses.svg").read_bytes()
 
 
-def transcript(words: Sequence[str], work: Path, prompt: str = "") -> str:
+def transcript(words: Sequence[str], work: Path, *before: str) -> str:
     """What ``coatcheck`` with these ``words`` prints in the folder ``work``, warnings first, as a block.
 
-    prompt : a line before it.
+    before : lines above it.
     """
     done = subprocess.run(
         [sys.executable, "-m", "verification.cli", *words],
@@ -50,7 +49,7 @@ def transcript(words: Sequence[str], work: Path, prompt: str = "") -> str:
         check=True,
     )
     lines = shown_lines(done.stderr, done.stdout)
-    return "\n".join(["```text", *filter(None, [prompt]), *lines, "```"])
+    return "\n".join(["```text", *before, *lines, "```"])
 
 
 def variables() -> dict[str, str]:
@@ -70,11 +69,8 @@ def shown_lines(warned: str, printed: str) -> list[str]:
 
 def worked(number: int) -> str:
     """Output for the file of this number, from 1."""
-    files = re.findall(
-        r"^```toml\n(.*?)^```$",
-        (SOURCE / "examples.md").read_text(encoding="utf-8"),
-        re.MULTILINE | re.DOTALL,
-    )
+    page = (SOURCE / "examples.md").read_text(encoding="utf-8")
+    files = re.findall(r"^```toml\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
     with tempfile.TemporaryDirectory() as work:
         (Path(work) / "example.toml").write_text(files[number - 1], encoding="utf-8")
         return transcript(["solve", "example.toml"], Path(work), "$ coatcheck solve example.toml")

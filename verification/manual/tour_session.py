@@ -1,7 +1,6 @@
 """The commands that a designer gives one after another, what they printed and took, from their record."""
 
 import json
-import shlex
 import textwrap
 from pathlib import Path
 from typing import Any
@@ -45,8 +44,3 @@ def tour_session() -> str:
             words = textwrap.wrap(f"$ coatcheck {one['words']}", 86, subsequent_indent="    ")
             parts.append("\n".join(["```text", *(" \\\n".join(words)).splitlines(), one["printed"], "```"]))
     return "\n\n".join(parts)
-
-
-def split(words: str) -> list[str]:
-    """The words of a command."""
-    return shlex.split(words)

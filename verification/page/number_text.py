@@ -114,6 +114,4 @@ def _prefix(number: float) -> tuple[float, str]:
 
 
 def _minus(text: str) -> str:
-    return (
-        text.replace("-", "−") if "e" not in text else text.replace("-", "−", 1) if text[0] == "-" else text
-    )
+    return f"−{text[1:]}" if text.startswith("-") else text

@@ -56,10 +56,10 @@ def words(text: str) -> Cell:
     return Cell(text, css="words")
 
 
-def outcome_cell(outcome: Outcome, href: str = "") -> Cell:
+def outcome_cell(outcome: Outcome) -> Cell:
     """A verdict as mark, word and colour; it sorts by how bad it is."""
     style = OUTCOMES[outcome]
-    return Cell(f"{style.mark} {style.word}", float(style.rank), f"verdict {style.css}", "", href)
+    return Cell(f"{style.mark} {style.word}", float(style.rank), f"verdict {style.css}")
 
 
 def tally(good: int, total: int, css: str = "") -> Cell:
@@ -102,6 +102,12 @@ class Table:
     def __bool__(self) -> bool:
         return bool(self.rows)
 
+    @property
+    def heads(self) -> list[str]:
+        """The columns, each behind the title of its group."""
+        over = [title for title, count in self.groups for _ in range(count)] or [""] * len(self.columns)
+        return [f"{title}: {head}" if title else head for title, head in zip(over, self.columns, strict=True)]
+
 
 def table_of(
     caption: str,
@@ -123,7 +129,7 @@ class Panel:
     title: str
     figure: Markup
     note: str
-    css: str
+    css: str = ""
 
 
 @dataclass(frozen=True)
@@ -176,15 +182,8 @@ class Section:
 
 def _cells_of(table: Table) -> list[list[str]]:
     """Heads, then rows: the number of a cell where it has one, else its text."""
-    heads = list(table.columns)
-    if table.groups:
-        over = [title for title, count in table.groups for _ in range(count)]
-        heads = [f"{group}: {head}" if group else head for group, head in zip(over, heads, strict=True)]
-    rows = [
-        [
-            cell.text if cell.sort is None or cell.text in ("", "–") else f"{cell.sort:.9g}"
-            for cell in row.cells
-        ]
-        for row in table.rows
-    ]
-    return [heads, *([row.head.text, *cells] for row, cells in zip(table.rows, rows, strict=True)), []]
+
+    def shown(cell: Cell) -> str:
+        return cell.text if cell.sort is None or cell.text in ("", "–") else f"{cell.sort:.9g}"
+
+    return [table.heads, *([row.head.text, *map(shown, row.cells)] for row in table.rows), []]

@@ -98,11 +98,10 @@ def _draw_curves(curves: Sequence[Curve], span: tuple[float, float]) -> Axes:
     axes.ticks(y=round_ticks(low, high, 5))
     # Broad full lines first: a dashed one on top leaves both visible.
     found = sorted(curves, key=lambda curve: (bool(curve.style.dash), -curve.style.width))
-    base = min(found, key=lambda curve: -curve.style.width, default=None)
+    base = max(found, key=lambda curve: curve.style.width, default=None)
     for n, curve in enumerate(found):
         few = curve.position.size < FEW
-        alone = base is None or curve is base or _apart(curve, base, high - low)
-        if alone or few:
+        if few or base is None or curve is base or _apart(curve, base, high - low):
             axes.line(curve.position, curve.value, curve.style, dots=few)
         if curve is not base and not few:
             share = (np.arange(MARKED) + (n + 0.5) / len(found)) / MARKED
@@ -144,7 +143,7 @@ def _draw_differences(
                 height = _logarithm(difference.uncertainty)
             axes.ring(difference.position[at], height[at])
     if cap is not None and cap > 0:
-        axes.level(log10(cap), CAP)
+        axes.line(np.array(span), np.full(2, log10(cap)), CAP)
     return axes
 
 

@@ -40,7 +40,10 @@ class Trail:
 
 @dataclass(frozen=True)
 class Plot:
-    """A panel of curves; ``label`` describes it to a screen reader, ``note`` is its axis in words."""
+    """A panel of curves; ``label`` describes it to a screen reader, ``note`` is its axis in words.
+
+    coordinate : the label of the horizontal axis.   ticks : resolutions written below.
+    """
 
     title: str
     label: str
@@ -52,48 +55,28 @@ class Plot:
 
 def panels(plots: Sequence[Plot]) -> list[Panel]:
     """The ``plots`` side by side on one scale of errors."""
-    height = decades([trail for plot in plots for trail in plot.trails])
-    drawn = [
-        draw_loglog(p.trails, label=p.label, coordinate=p.coordinate, height=height, ticks=p.ticks)
-        for p in plots
-    ]
-    return [Panel(plot.title, figure, plot.note, "") for plot, figure in zip(plots, drawn, strict=True)]
-
-
-def decades(trails: Sequence[Trail]) -> tuple[float, float]:
-    """Whole powers of ten that hold every error, so that panels side by side share one scale."""
-    errors = [log10(e) for trail in trails for _, e in trail.drawn]
+    errors = [log10(e) for plot in plots for trail in plot.trails for _, e in trail.drawn]
     # A tenth of a decade keeps a point off the frame.
     low, high = floor(min(errors, default=-9.0) - 0.1), ceil(max(errors, default=-1.0) + 0.1)
-    return float(low), float(max(high, low + 1))
+    height = float(low), float(max(high, low + 1))
+    return [Panel(plot.title, _drawn(plot, height), plot.note) for plot in plots]
 
 
-def draw_loglog(
-    trails: Sequence[Trail],
-    *,
-    label: str,
-    coordinate: str,
-    height: tuple[float, float],
-    ticks: Sequence[float],
-) -> Markup:
-    """One figure as inline SVG.
-
-    height : exponents of ten at the bottom and at the top.   ticks : resolutions written below.
-    coordinate : the label of the horizontal axis.
-    """
-    places = [x for trail in trails for x, _ in trail.drawn] or [1.0, 10.0]
+def _drawn(plot: Plot, height: tuple[float, float]) -> Markup:
+    """One figure; ``height`` holds the exponents of ten at the bottom and at the top."""
+    places = [x for trail in plot.trails for x, _ in trail.drawn] or [1.0, 10.0]
     margin = 0.04 * max(log10(max(places) / min(places)), 0.5)
     span = log10(min(places)) - margin, log10(max(places)) + margin
     axes = Axes(BOX, span, height)
     step = max(1, ceil((height[1] - height[0]) / 6))
     axes.ticks(
-        [(log10(tick), f"{tick:g}") for tick in ticks if span[0] <= log10(tick) <= span[1]],
+        [(log10(tick), f"{tick:g}") for tick in plot.ticks if span[0] <= log10(tick) <= span[1]],
         [(exponent, power_of_ten(exponent)) for exponent in np.arange(height[0], height[1] + 0.5, step)],
-        coordinate,
+        plot.coordinate,
     )
     ends = []
     # Full lines first: a dashed one on top leaves both visible.
-    for trail in sorted(trails, key=lambda trail: bool(trail.style.dash)):
+    for trail in sorted(plot.trails, key=lambda trail: bool(trail.style.dash)):
         if trail.drawn:
             points = np.log10(trail.drawn)
             axes.line(points[:, 0], points[:, 1], trail.style, dots=True)
@@ -105,7 +88,7 @@ def draw_loglog(
         _separated([(end[0] - height[0]) / scale for end in ends]), ends, strict=True
     ):
         axes.text(span[1], height[0] + at * scale, note, colour=colour, by=(4, 4))
-    return drawing(WIDTH, HEIGHT, label, axes)
+    return drawing(WIDTH, HEIGHT, plot.label, axes)
 
 
 def draw_histogram(edges: Sequence[float], counts: Sequence[int], label: str) -> Markup:

@@ -95,14 +95,12 @@ class Axes:
             'fill-opacity=".13"/>'
         )
 
-    def level(self, at: float, style: Style) -> None:
-        """A horizontal line across the frame."""
-        self.line(np.array(self.x), np.array([at, at]), style)
-
     def filled(
         self, x: Array, y: Array, z: Array, low: float, high: float, colour: str, shade: float
     ) -> None:
         """The area where ``z`` (y, x) lies between ``low`` and ``high``."""
+        if not ((z > low).any() and (z <= high).any()):
+            return
         generator = contourpy.contour_generator(x, y, z, fill_type="OuterOffset")
         path = "".join(
             polyline(self.place(*ring.T)) + "z"
@@ -186,40 +184,6 @@ def drawing(width: float, height: float, label: str, *axes: Axes, data: str = ""
     )
 
 
-def level_map(
-    label: str,
-    x: Array,
-    y: Array,
-    areas: Sequence[tuple[Array, float, float, str, float]],
-    contours: Sequence[tuple[Array, float, str]],
-    ticks: tuple[Sequence[tuple[float, str]], Sequence[tuple[float, str]]],
-    names: tuple[str, str],
-) -> Markup:
-    """A map over ``x`` and ``y`` with ``ticks`` and ``names`` of both axes.
-
-    areas : values (y, x), the levels between which they are tinted, colour, shade.   contours : values,
-    level, its text.
-    """
-    axes = Axes((48.0, 5.0, 266.0, 207.5), (x[0], x[-1]), (y[0], y[-1]))
-    for z, low, high, colour, shade in areas:
-        if (z > low).any() and (z <= high).any():
-            axes.filled(x, y, z, low, high, colour, shade)
-    for z, level, text in contours:
-        if z.min() < level < z.max():
-            axes.contour(x, y, z, level, text)
-    axes.ticks(*ticks, names[0])
-    axes.text(x[0], y[-1], names[1], by=(4, 13))
-    return drawing(320, 250, f"{label} over {names[0]} and {names[1]}", axes)
-
-
-def tint(colour: str, shade: float) -> Markup:
-    """A small piece of a tinted area as a map draws it."""
-    return Markup(
-        '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true"><rect x="1" y="0" width="34" height="10" '
-        'class="f-{} s-muted" stroke-width="1" fill-opacity="{}"/></svg>'
-    ).format(colour, shade)
-
-
 def polyline(points: Array) -> str:
     """``points`` (n, 2) as the data of a path, in tenths of a unit relative to the point before.
 
@@ -274,12 +238,8 @@ def round_ticks(low: float, high: float, count: int) -> list[tuple[float, str]]:
     power = 10.0 ** floor(log10(raw))
     step = next(s * power for s in (1, 2, 5, 10) if s * power >= raw * (1 - 1e-9))
     first, last = ceil(low / step - 1e-9), floor(high / step + 1e-9)
-    return [(number * step, short(number * step)) for number in range(first, last + 1)]
-
-
-def short(value: float) -> str:
-    """A round number as a tick label."""
-    return f"{value:.6g}".replace("-", "−")
+    ticks = [number * step for number in range(first, last + 1)]
+    return [(tick, f"{tick:.6g}".replace("-", "−")) for tick in ticks]
 
 
 def power_of_ten(exponent: float) -> str:

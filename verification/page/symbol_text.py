@@ -5,6 +5,7 @@ them, another SVG, a third plain Unicode.
 """
 
 import re
+from collections.abc import Callable
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -29,34 +30,64 @@ _GREEK = {
     "kappa": "κ",
     "epsilon": "ε",
 }
-_NUMBER = r"(?<![\w.])(?P<mantissa>[+−-]?\d+(?:\.\d+)?)e(?P<exponent>[+−-]?\d+)(?!\w)"
-_PATTERN = re.compile(
-    "|".join(
-        (
-            _NUMBER,
-            r"(?<!\w)(?P<tensor>sigma|eps)_(?P<component>[xyzk]{2})(?!\w)",
-            r"(?<!\w)u_(?P<displacement>[xyz])(?!\w)",
-            r"(?<!\w)(?P<hertz>a|p|S|delta)_h(?!\w)",
-            r"(?<!\w)(?P<maximum>tau_max|von_mises_max)(?!\w)",
-            r"(?<!\w)(?P<slope>dW/d ?delta)(?!\w)",
-            r"(?<!\w)(?P<modulus>E)(?P<index>[12s])?(?P<star>\*)(?!\w)",
-            r"(?<!\w)(?P<indexed>E|nu|h)_?(?P<layer>[12s])(?!\w)",
-            r"(?<!\w)p_?(?P<peak>0)(?!\w)",
-            r"(?<!\w)U_(?P<side>[A-Z])(?!\w)",
-            r"(?<!\w)(?P<greek>delta|nu|kappa)(?!\w)",
-            r"(?<!\w)(?P<letter>[hfpERUWxyzsaq])(?P<relation> (?:=|/|<|>|−|≤) )",
-            r"(?<!\w)(?P<place>x)(?= of max )",
-            r"^(?P<alone>[aEhfpRWxz])(?= \[|$)",
-            r"(?:(?<=radius )|(?<=load )|(?<=leaves )|(?<=friction )|(?<=pressure )|(?<=over ))"
-            r"(?P<named>[RaWfqp])(?!\w)",
-            r"(?<=q = )(?P<traction>f p)(?!\w)",
-            r"(?<!\w)(?P<bound>U)(?![\w.])",
-            r"(?<=\d )(?P<unit>a)(?=[ .,;)]|$)(?! \w)",
-            r"(?<=/ )(?P<under>[aW])(?!\w)",
-            r"\|(?P<first>[AB]) − (?P<second>[AB])\|",
-        )
-    )
+
+
+def _letter(symbol: str) -> list[Piece]:
+    return [Piece(_GREEK.get(symbol, symbol), True)]
+
+
+def _indexed(symbol: str, index: str, italic: bool = False) -> list[Piece]:
+    return [*_letter(symbol), Piece(index, italic, -1)]
+
+
+def _component(symbol: str, index: str) -> list[Piece]:
+    return _indexed(symbol, index, italic=True)
+
+
+def _power_of_ten(mantissa: str, exponent: str) -> list[Piece]:
+    exponent = str(int(exponent.replace("−", "-"))).replace("-", "−")
+    mantissa = mantissa.replace("-", "−")
+    times = mantissa[:-1] if mantissa in ("1", "+1", "−1") else f"{mantissa}·"
+    return [Piece(f"{times}10"), Piece(exponent, level=1)]
+
+
+def _modulus(index: str | None) -> list[Piece]:
+    return [Piece("E", True), *([Piece(index, level=-1)] if index else []), Piece("*", level=1)]
+
+
+def _related(letter: str, relation: str) -> list[Piece]:
+    # a formula is not broken behind its first letter
+    return [Piece(letter, True), Piece(relation.replace(" ", "\N{NO-BREAK SPACE}"))]
+
+
+# What is typeset, each with what makes pieces of its groups; the first that fits counts.
+_RULES: tuple[tuple[str, Callable[..., list[Piece]]], ...] = (
+    (r"(?<![\w.])([+−-]?\d+(?:\.\d+)?)e([+−-]?\d+)(?!\w)", _power_of_ten),
+    (r"(?<!\w)(sigma|eps)_([xyzk]{2})(?!\w)", _component),
+    (r"(?<!\w)(u)_([xyz])(?!\w)", _component),
+    (r"(?<!\w)(a|p|S|delta)_h(?!\w)", lambda symbol: _indexed(symbol, "H")),
+    (r"(?<!\w)tau_max(?!\w)", lambda: _indexed("tau", "max")),
+    (r"(?<!\w)von_mises_max(?!\w)", lambda: _indexed("sigma", "vM")),
+    (r"(?<!\w)dW/d ?delta(?!\w)", lambda: [Piece("d"), *_letter("W"), Piece("/d"), *_letter("delta")]),
+    (r"(?<!\w)E([12s])?\*(?!\w)", _modulus),
+    (r"(?<!\w)(E|nu|h)_?([12s])(?!\w)", _indexed),
+    (r"(?<!\w)(p)_?(0)(?!\w)", _indexed),
+    (r"(?<!\w)(U)_([A-Z])(?!\w)", _component),
+    (r"(?<!\w)(delta|nu|kappa)(?!\w)", _letter),
+    (r"(?<!\w)([hfpERUWxyzsaq])( (?:=|/|<|>|−|≤) )", _related),
+    (r"(?<!\w)(x)(?= of max )", _letter),
+    (r"^([aEhfpRWxz])(?= \[|$)", _letter),
+    (
+        r"(?:(?<=radius )|(?<=load )|(?<=leaves )|(?<=friction )|(?<=pressure )|(?<=over ))([RaWfqp])(?!\w)",
+        _letter,
+    ),
+    (r"(?<=q = )(f p)(?!\w)", _letter),
+    (r"(?<!\w)(U)(?![\w.])", _letter),
+    (r"(?<=\d )(a)(?=[ .,;)]|$)(?! \w)", _letter),
+    (r"(?<=/ )([aW])(?!\w)", _letter),
+    (r"\|([AB]) − ([AB])\|", lambda a, b: [Piece("|"), *_letter(a), Piece(" − "), *_letter(b), Piece("|")]),
 )
+_PATTERN = re.compile("|".join(pattern for pattern, _ in _RULES))
 SMALL = 0.78  # size of an index over that of the line
 _SUPERSCRIPT = str.maketrans("0123456789-−+", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻⁻⁺")
 
@@ -67,54 +98,28 @@ def pieces(text: str) -> list[Piece]:
     for match in _PATTERN.finditer(text):
         if match.start() > at:
             found.append(Piece(text[at : match.start()]))
-        found += _formula({name: value for name, value in match.groupdict().items() if value is not None})
+        for pattern, make in _RULES:
+            if groups := re.compile(pattern).match(text, match.start()):
+                found += make(*groups.groups())
+                break
         at = match.end()
     return [*found, Piece(text[at:])] if at < len(text) else found
 
 
-def _formula(of: dict[str, str]) -> list[Piece]:
-    if "mantissa" in of:
-        exponent = str(int(of["exponent"].replace("−", "-"))).replace("-", "−")
-        mantissa = of["mantissa"].replace("-", "−")
-        times = "" if mantissa in ("1", "+1", "−1") else f"{mantissa}·"
-        return [Piece(f"{times or mantissa[:-1]}10"), Piece(exponent, level=1)]
-    if "tensor" in of:
-        return [Piece(_GREEK[of["tensor"]], True), Piece(of["component"], True, -1)]
-    if "displacement" in of:
-        return [Piece("u", True), Piece(of["displacement"], True, -1)]
-    if "hertz" in of:
-        return [Piece(_GREEK.get(of["hertz"], of["hertz"]), True), Piece("H", level=-1)]
-    if "maximum" in of:
-        symbol, index = ("τ", "max") if of["maximum"] == "tau_max" else ("σ", "vM")
-        return [Piece(symbol, True), Piece(index, level=-1)]
-    if "slope" in of:
-        return [Piece("d"), Piece("W", True), Piece("/d"), Piece("δ", True)]
-    if "modulus" in of:
-        below = [Piece(of["index"], level=-1)] if "index" in of else []
-        return [Piece("E", True), *below, Piece("*", level=1)]
-    if "indexed" in of:
-        return [Piece(_GREEK.get(of["indexed"], of["indexed"]), True), Piece(of["layer"], level=-1)]
-    if "peak" in of:
-        return [Piece("p", True), Piece("0", level=-1)]
-    if "side" in of:
-        return [Piece("U", True), Piece(of["side"], True, -1)]
-    if "first" in of:
-        return [Piece("|"), Piece(of["first"], True), Piece(" − "), Piece(of["second"], True), Piece("|")]
-    if "relation" in of:  # a formula is not broken behind its first letter
-        return [Piece(of["letter"], True), Piece(of["relation"].replace(" ", "\N{NO-BREAK SPACE}"))]
-    (text,) = of.values()
-    return [Piece(_GREEK.get(text, text), True)]
+def html(text: str, escaped: Callable[[str], object]) -> str:
+    """HTML of ``text``, every piece of it ``escaped``."""
+    written = []
+    for piece in pieces(text):
+        inner = str(escaped(piece.text))
+        inner = f"<i>{inner}</i>" if piece.italic else inner
+        tag = {-1: "sub", 1: "sup"}.get(piece.level)
+        written.append(f"<{tag}>{inner}</{tag}>" if tag else inner)
+    return "".join(written)
 
 
 @lru_cache(maxsize=4096)
 def _html(text: str) -> Markup:
-    written = []
-    for piece in pieces(text):
-        inner = str(escape(piece.text))
-        inner = f"<i>{inner}</i>" if piece.italic else inner
-        tag = {-1: "sub", 1: "sup"}.get(piece.level)
-        written.append(f"<{tag}>{inner}</{tag}>" if tag else inner)
-    return Markup("".join(written))
+    return Markup(html(text, escape))
 
 
 def typeset(text: object) -> Markup:
@@ -142,10 +147,6 @@ def drawn(text: str) -> Markup:
 def unicode(text: str) -> str:
     """``text`` in plain Unicode, for names that a screen reader or a tooltip gives."""
     return "".join(
-        piece.text.translate(_SUPERSCRIPT)
-        if piece.level > 0
-        else f"_{piece.text}"
-        if piece.level < 0
-        else piece.text
+        piece.text.translate(_SUPERSCRIPT) if piece.level > 0 else "_" * -piece.level + piece.text
         for piece in pieces(text)
     )

@@ -108,7 +108,7 @@ def gather(
             failures.append(" ".join(message.split())[:300])
             return otherwise
 
-    enclosed = attempt("enclosures", lambda: enclosure_record.read_record(records), None)
+    enclosures = attempt("enclosures", lambda: enclosure_record.read_record(records), None)
     maps = attempt("maps of the assumptions", lambda: read_maps(records), None)
     models = {
         name: attempt(f"error of the model, {name}", partial(model_error, one.problem, maps), ModelError(()))
@@ -119,7 +119,7 @@ def gather(
     made = {
         "faults": faults.commit if faults else None,
         "alarms": alarms.commit if alarms else None,
-        "enclosures": enclosed.commit if enclosed else None,
+        "enclosures": enclosures.commit if enclosures else None,
         "maps": made_with(maps)[1] if maps and maps.maps else None,
     }
     return Evidence(
@@ -128,7 +128,7 @@ def gather(
         faults,
         alarms,
         tuple(failures),
-        enclosures=enclosed,
+        enclosures=enclosures,
         self_tests=tuple(self_tests),
         maps=maps,
         older=tuple(name for name, commit in made.items() if changed_since(commit, JUDGED[name])),

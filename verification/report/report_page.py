@@ -28,13 +28,13 @@ from verification.report.report_material import Material
 from verification.report.sections import (
     accuracy_section,
     family_section,
+    first_page,
     invariants_section,
     overview_section,
     published_section,
     refinement_section,
 )
 from verification.report.sections.case_page import contents, data
-from verification.report.sections.first_page import FIRST_PAGE
 from verification.running.case_result import SCHEMA, to_json
 from verification.running.checked_files import write_together
 from verification.running.json_records import encode
@@ -85,7 +85,6 @@ def render(material: Material) -> str:
     """The whole page as text. Every string of a result is escaped: a title "<script>" stays text."""
     # Results may hold numbers that overflow or are not finite; the page shows them as they are.
     with np.errstate(all="ignore"):
-        first = {name: block(material) for name, block in FIRST_PAGE.items()}
         cases = [contents(material, result) for result in material.results]
         sections = [
             (group, found)
@@ -96,15 +95,14 @@ def render(material: Material) -> str:
             (group, [section for _, section in some])
             for group, some in groupby(sections, key=lambda pair: pair[0])
         ]
-        packed = len(cases) > MOST_UNPACKED
         return rendered(
             "page.html",
             HTML,
-            **first,
+            **first_page.contents(material),
             info=material.info,
             groups=groups,
             cases=cases,
-            packed=packed,
+            packed=len(cases) > MOST_UNPACKED,
             data=data(material),
             seconds=seconds,
         )

@@ -18,10 +18,9 @@ SLOW = ("solved", *WORKED)  # solve problems
 
 
 def test_an_unknown_block_is_refused_with_the_page(tmp_path, monkeypatch):
-    source = tmp_path / "kept"
-    source.mkdir()
-    (source / "page.md").write_text("# Page\n\n```{generated} nothing\n```\n")
-    monkeypatch.setattr(manual_build, "SOURCE", source)
+    (tmp_path / "kept").mkdir()
+    (tmp_path / "kept" / "page.md").write_text("# Page\n\n```{generated} nothing\n```\n")
+    monkeypatch.setattr(manual_build, "SOURCE", tmp_path / "kept")
     with pytest.raises(manual_build.ManualError, match=r"page\.md"):
         manual_build.assemble(tmp_path / "out")
 

@@ -25,10 +25,8 @@ def report(tmp_path_factory):
     problem = results[0].problem
     hertz = Hertz(problem["radius"], problem["load"], *problem["substrate"])
     plane = sample_plane(tuple(problem["interfaces"]), {"semianalytic": hertz, "fem_reference": hertz})
-    failed = "order 3: the mesh has no triangles"
-    return write_report(
-        Material(results, INFO, Evidence(accuracy=study(failed)), {results[0].name: plane}), folder, ""
-    )
+    evidence = Evidence(accuracy=study("order 3: the mesh has no triangles"))
+    return write_report(Material(results, INFO, evidence, {results[0].name: plane}), folder, "")
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +43,10 @@ def go(chromium: Page, where: str) -> None:
     chromium.evaluate(f"({GO})({where!r})")
 
 
+def wait(chromium: Page, milliseconds: int) -> None:
+    chromium.evaluate(f"new Promise((done) => setTimeout(done, {milliseconds}))")
+
+
 @pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
 def test_every_page_fits_and_is_silent(chromium: Page, report, dark):
     chromium.open(report, width=390, dark=dark)
@@ -56,9 +58,8 @@ def test_every_page_fits_and_is_silent(chromium: Page, report, dark):
             if where == "first" or width == 1280:
                 assert chromium.evaluate(HEIGHT) <= (1600 if where == "first" else 8000), (where, width)
     assert chromium.evaluate("document.querySelectorAll('.page.here').length") == 1
-    loud = [e for e in chromium.events if e["method"] in ("Runtime.consoleAPICalled", "Log.entryAdded")]
-    loud += [e for e in chromium.events if e["method"] == "Runtime.exceptionThrown"]
-    assert loud == []
+    loud = {"Runtime.consoleAPICalled", "Log.entryAdded", "Runtime.exceptionThrown"}
+    assert [event for event in chromium.events if event["method"] in loud] == []
     asked = [e for e in chromium.events if e["method"] == "Network.requestWillBeSent"]
     addresses = {e["params"]["request"]["url"].partition("#")[0] for e in asked}
     assert {a for a in addresses if not a.startswith("data:")} == {report.as_uri()}
@@ -110,15 +111,13 @@ def test_a_pressed_column_head_sorts_the_table(chromium: Page, report):
 def test_everything_can_be_reached_by_keyboard(chromium: Page, report):
     chromium.open(report, width=1360)
     go(chromium, "cases")
+    focused = "document.activeElement.tagName + '.' + document.activeElement.className"
     reached = set()
     for _ in range(60):
         chromium.press("Tab", 9)
-        reached.add(
-            chromium.evaluate("document.activeElement.tagName + '.' + document.activeElement.className")
-        )
+        reached.add(chromium.evaluate(focused))
     assert {"A.brand", "DIV.scroll", "BUTTON.", "A.", "INPUT."} <= reached
-    outline = chromium.evaluate("getComputedStyle(document.activeElement).outlineStyle")
-    assert outline != "none"
+    assert chromium.evaluate("getComputedStyle(document.activeElement).outlineStyle") != "none"
     # What scrolls inside its own box must take the focus too, or a keyboard cannot scroll it.
     assert chromium.evaluate("document.querySelectorAll('.scroll:not([tabindex])').length") == 0
 
@@ -129,10 +128,9 @@ def test_the_numbers_come_out_of_the_page_as_csv(chromium: Page, report, tmp_pat
     link = "document.querySelector('a[data-csv$=\"surface.csv\"]')"
     name = chromium.evaluate(f"{link}.dataset.csv")
     chromium.evaluate(f"{link}.click()")
-    deadline = 50
-    while not (tmp_path / name).exists() and deadline:
-        chromium.evaluate("new Promise(done => setTimeout(done, 100))")
-        deadline -= 1
+    for _ in range(50):
+        if not (tmp_path / name).exists():
+            wait(chromium, 100)
     text = (tmp_path / name).read_text()
     assert text.startswith("x [m],pressure [Pa] semianalytic,")
     assert len(text.splitlines()) == 66
@@ -164,7 +162,7 @@ def test_a_pointer_on_a_comparison_names_it_and_a_click_draws_it(chromium: Page,
     assert re.search(r"\|A − B\| .*U .*cap .*(agrees|disagrees|inconclusive)", told)
     for kind in ("mousePressed", "mouseReleased"):
         chromium.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
-    chromium.evaluate("new Promise((done) => setTimeout(done, 400))")
+    wait(chromium, 400)
     opened = chromium.evaluate("[location.hash, document.querySelector('.page.here').id]")
     assert opened[0].startswith(f"#{opened[1]}")
     go(chromium, f"{opened[1]}~axis~sigma_xx")
@@ -175,8 +173,8 @@ def test_a_pointer_on_a_comparison_names_it_and_a_click_draws_it(chromium: Page,
     chromium.press("ArrowRight", 39)
     assert "semi-analytical" in chromium.evaluate("document.querySelector('.tip').textContent")
     chromium.evaluate("document.querySelector('.here .numbers-of').open = true")
-    rows = "document.querySelectorAll('.here .comparisons tbody tr').length"
-    assert chromium.evaluate(f"new Promise((done) => setTimeout(() => done({rows}), 100))") > 20
+    wait(chromium, 100)
+    assert chromium.evaluate("document.querySelectorAll('.here .comparisons tbody tr').length") > 20
 
 
 def test_the_search_finds_a_case(chromium: Page, report):
@@ -187,7 +185,7 @@ def test_the_search_finds_a_case(chromium: Page, report):
     shown = "[...document.querySelectorAll('.menu li')].filter((item) => !item.hidden).length"
     assert chromium.evaluate(shown) == 1
     chromium.press("Enter", 13)
-    chromium.evaluate("new Promise((done) => setTimeout(done, 200))")
+    wait(chromium, 200)
     assert chromium.evaluate("document.querySelector('.page.here').id") == "case-silver"
 
 

@@ -22,18 +22,12 @@ def frictionless():
 
 
 def test_coatings_of_one_thickness_and_the_bare_solid_are_a_family(frictionless):
-    section = family_section(frictionless)
-    assert len(section.parts) == 1
-    panels = section.parts[0].gallery.panels
+    (part,) = family_section(frictionless).parts
+    panels = part.gallery.panels
     assert [panel.title for panel in panels].count("sigma_xx / p_h") == 4
-    assert [label for _, label in section.parts[0].gallery.legend] == [
-        f"E1/E2 = {ratio}" for ratio in ("0.25", "1", "2", "4")
-    ]
+    assert [label for _, label in part.gallery.legend] == [f"E1/E2 = {r}" for r in ("0.25", "1", "2", "4")]
     assert all(str(panel.figure).count('class="s-ink"') == len(frictionless) for panel in panels[:3])
-
-
-def test_its_numbers_are_those_of_the_cases(frictionless):
-    table = family_section(frictionless).parts[0].tables[0]
+    (table,) = part.tables
     assert [row.head.text for row in table.rows] == ["0.25", "1", "2", "4"]
     stiff = frictionless[0]
     radius = stiff.profile_of["contact_radius", "contact", "semianalytic"].value[0] / stiff.problem["a_h"]
@@ -42,10 +36,9 @@ def test_its_numbers_are_those_of_the_cases(frictionless):
 
 
 def test_other_thickness_friction_or_too_few_are_no_family(frictionless):
-    assert family_section(frictionless[:2]) is None
-    assert family_section([*frictionless[:2], member(3, thickness=0.5)]) is None
-    assert family_section([*frictionless[:2], member(3, friction=0.25)]) is None
-    assert family_section([*frictionless[:2], frictionless[0]]) is None
+    two = frictionless[:2]
+    for more in ((), (member(3, thickness=0.5),), (member(3, friction=0.25),), (two[0],)):
+        assert family_section([*two, *more]) is None
 
 
 def test_each_friction_has_a_family_of_its_own(frictionless):

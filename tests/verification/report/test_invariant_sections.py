@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.judging.invariants import Invariant
@@ -19,24 +18,18 @@ BROKEN = Invariant("equilibrium, substrate", "hertz", 3e-5, 1e-5, Outcome.DISAGR
 LOST = Invariant("sphere", "fem_reference", None, None, Outcome.NO_RESULT, "RuntimeError: no such plane")
 
 
-@pytest.fixture(scope="module")
-def sound():
-    return replace(result_of(contact(), points=31), invariants=(HOLDS, CLOSE))
+SOUND = replace(result_of(contact(), points=31), invariants=(HOLDS, CLOSE))
+SLIPPED = replace(SOUND, invariants=(HOLDS, CLOSE, BROKEN, LOST))
 
 
-@pytest.fixture(scope="module")
-def slipped(sound):
-    return replace(sound, invariants=(HOLDS, CLOSE, BROKEN, LOST))
+def test_broken_invariant_makes_the_case_disagree_though_every_comparison_agrees():
+    assert SOUND.outcome is Outcome.AGREES
+    assert SLIPPED.outcome is Outcome.DISAGREES
+    assert replace(SOUND, invariants=(HOLDS, LOST)).outcome is Outcome.NO_RESULT
 
 
-def test_broken_invariant_makes_the_case_disagree_though_every_comparison_agrees(sound, slipped):
-    assert sound.outcome is Outcome.AGREES
-    assert slipped.outcome is Outcome.DISAGREES
-    assert replace(sound, invariants=(HOLDS, LOST)).outcome is Outcome.NO_RESULT
-
-
-def test_table_begins_with_what_is_broken_then_with_the_closest_to_its_bound(slipped):
-    table = invariant_table(slipped.invariants)
+def test_table_begins_with_what_is_broken_then_with_the_closest_to_its_bound():
+    table = invariant_table(SLIPPED.invariants)
     assert table.columns[2:] == ["semi-analytical", "Hertz", "finite elements"]
     shown = {row.head.text: [cell.text for cell in row.cells[1:]] for row in table.rows}
     assert list(shown.items()) == [
@@ -49,14 +42,14 @@ def test_table_begins_with_what_is_broken_then_with_the_closest_to_its_bound(sli
     assert invariant_table(()) is None
 
 
-def test_section_gathers_the_layers_of_a_law_over_all_cases(sound, slipped):
-    found = section(Material([sound, slipped], INFO))
+def test_section_gathers_the_layers_of_a_law_over_all_cases():
+    found = section(Material([SOUND, SLIPPED], INFO))
     assert "4 of 6" in found.parts[0].text
     rows = {row.head.text: row for row in found.parts[0].tables[0].rows}
     assert set(rows) == {"load balance", "equilibrium", "sphere"}
     held = next(cell for cell in rows["equilibrium"].cells if cell.text)
     assert (held.text, held.href) == ("2 of 3", "#case-stiff-coating--2-invariants")
-    assert section(Material([replace(sound, invariants=())], INFO)) is None
+    assert section(Material([replace(SOUND, invariants=())], INFO)) is None
 
 
 def test_dominating_parameter_is_the_largest_share_of_the_less_certain_side():

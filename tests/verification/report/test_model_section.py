@@ -17,7 +17,6 @@ from verification.report.report_material import Evidence, Material
 from verification.report.report_page import render
 
 RESULT = result_of(contact(), points=5)
-TITLES = ("parabola for the sphere", "Goodman's assumption")
 
 
 @pytest.fixture(scope="module")
@@ -27,10 +26,6 @@ def maps():
 
 def section_of(maps):
     return section(Material([RESULT], INFO, Evidence(maps=maps)))
-
-
-def test_no_record_has_no_section():
-    assert section(Material([RESULT], INFO)) is None
 
 
 def test_section_has_every_assumption_of_the_record(maps):
@@ -77,29 +72,26 @@ def test_map_with_holes_is_drawn(maps):
     assert len(holed.parts[1].gallery.panels) == 4
 
 
-def model_warnings(result, evidence):
-    found = evidence.models.get(result.name, ModelError(()))
-    return found.warnings(
-        judged_quantities({claim.quantity for claim, _ in result.verdicts}), result.warnings
-    )
+def model_of(size, assumption="Goodman's assumption"):
+    return ModelError((Cost(assumption, "tension", size, 0.0),))
 
 
-def model_of(size, assumption=TITLES[1], quantity="tension"):
-    return Evidence(models={RESULT.name: ModelError((Cost(assumption, quantity, size, 0.0),))})
+def warnings_of(model, told=()):
+    return model.warnings(judged_quantities({claim.quantity for claim, _ in RESULT.verdicts}), told)
 
 
 def test_warning_appears_exactly_beyond_the_limit():
-    assert model_warnings(RESULT, model_of(LIMIT)) == ()
-    (warning,) = model_warnings(RESULT, model_of(-1.02 * LIMIT))
+    assert warnings_of(model_of(LIMIT)) == ()
+    (warning,) = warnings_of(model_of(-1.02 * LIMIT))
     assert "5.1 %" in warning
-    assert model_warnings(RESULT, Evidence()) == ()
 
 
 def test_wide_contact_is_warned_of_once():
-    told = replace(RESULT, warnings=("contact radius a_h = 0.4 R is above 0.1 R: at the contact edge",))
-    assert model_warnings(told, model_of(0.1, TITLES[0])) == ()
-    assert model_warnings(told, model_of(0.1)) != ()
-    assert model_warnings(RESULT, model_of(0.1, TITLES[0])) != ()
+    told = ("contact radius a_h = 0.4 R is above 0.1 R: at the contact edge",)
+    sphere = model_of(0.1, "parabola for the sphere")
+    assert warnings_of(sphere, told) == ()
+    assert warnings_of(model_of(0.1), told) != ()
+    assert warnings_of(sphere) != ()
 
 
 def test_only_judged_quantities_are_warned_of():
@@ -109,8 +101,9 @@ def test_only_judged_quantities_are_warned_of():
 
 
 def test_page_of_a_case_states_the_error_of_the_model(maps):
-    evidence = replace(model_of(0.1), maps=maps, beyond={RESULT.name: model_warnings(RESULT, model_of(0.1))})
-    page = render(Material([RESULT], INFO, evidence))
+    model = model_of(0.1)
+    beyond = {RESULT.name: warnings_of(model)}
+    page = render(Material([RESULT], INFO, Evidence(maps=maps, models={RESULT.name: model}, beyond=beyond)))
     assert "10 %" in page
     assert "<strong>Beyond" in page
     assert page.count('id="model"') == 1

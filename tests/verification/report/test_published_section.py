@@ -15,21 +15,19 @@ from verification.running.case_result import RunInfo, from_json
 from verification.running.checked_files import read_checked
 from verification.running.published_counts import counts
 from verification.running.published_run import failed, run
-from verification.sources.source_registry import solvers
+from verification.sources.source_registry import METHODS, solvers
 
 SHIPPED = published_cases()
 INFO = RunInfo("coatcheck run published", "2026-01-01T00:00:00+00:00", 1.0, 1, None, "a machine", {})
 
 
-def both():
-    """Two sources by the quick method alone, which here speaks for both."""
-    quick = solvers()["semianalytic"]
-    return {"semianalytic": quick, "fem_reference": quick}
+# The quick method alone, which here speaks for both.
+BOTH = dict.fromkeys(METHODS, solvers()["semianalytic"])
 
 
 @pytest.fixture(scope="module")
 def results():
-    return [run(read_published(SHIPPED[n]), both()) for n in ("ahlvin_ulery_1962", "jones_1962")]
+    return [run(read_published(SHIPPED[n]), BOTH) for n in ("ahlvin_ulery_1962", "jones_1962")]
 
 
 @pytest.fixture(scope="module")
@@ -39,10 +37,8 @@ def page(results):
 
 def rows_of(page, anchor):
     """The text of every row of the section, cells parted by |."""
-    section = page.split(f'<article class="page case published" id="case-{anchor}">')[1].split("</article>")[
-        0
-    ]
-    rows = re.findall(r"<tr.*?</tr>", section, re.DOTALL)
+    article = page.partition(f'<article class="page case published" id="case-{anchor}">')[2]
+    rows = re.findall(r"<tr.*?</tr>", article.partition("</article>")[0], re.DOTALL)
     cells = [re.findall(r"<t[dh][^>]*>(.*?)</t[dh]>", row, re.DOTALL) for row in rows]
     rows = ["|".join(re.sub("<[^>]*>", "", cell) for cell in row) for row in cells]
     return [row.replace("·10−", "e-") for row in rows]
@@ -86,9 +82,8 @@ def test_values_keep_the_sign_and_unit_of_the_source(page):
 
 def test_a_value_that_is_not_met_is_marked(results):
     wrong = results[1]
-    profiles = tuple(
-        replace(p, value=p.value * 1.001) if p.source == "fem_reference" else p for p in wrong.profiles
-    )
+    factors = {"fem_reference": 1.001}
+    profiles = tuple(replace(p, value=p.value * factors.get(p.source, 1)) for p in wrong.profiles)
     rows = rows_of(render(Material([replace(wrong, profiles=profiles)], INFO)), "jones-1962")
     assert sum(row.endswith("✗") for row in rows) == 2
 
@@ -101,7 +96,7 @@ def test_a_failed_source_still_has_its_page():
 
 
 def test_command_line_runs_a_table_of_ones_own(tmp_path, monkeypatch):
-    monkeypatch.setattr("verification.running.published_run.solvers", lambda problem: both())
+    monkeypatch.setattr("verification.running.published_run.solvers", lambda problem: BOTH)
     (tmp_path / "mine.toml").write_text(SHIPPED["jones_1962"].read_text().replace("nu = 0.5", "nu = 0.3"))
     table = "factor,meaning,table_memory\nZZ1,a,0.500\nZZ1-RR1,b,1.000\n"
     (tmp_path / "jones_1962_three_layer.csv").write_text(table)

@@ -44,8 +44,7 @@ from verification.running.case_result import CaseResult
 MOST = 30
 
 
-def range_table(results: Sequence[CaseResult]) -> Table:
-    """Ranges of the problems of this run beside those of the random problems."""
+def _range_table(results: Sequence[CaseResult]) -> Table:
     solids = [(layers(result), scale(result, "a_h"), result.problem) for result in results]
     found: dict[str, tuple[list[float], Sequence[float]]] = {
         "E of a coating over E of the substrate": (
@@ -71,9 +70,7 @@ def range_table(results: Sequence[CaseResult]) -> Table:
     )
 
 
-def design_table(orders: Sequence[DesignOrder]) -> Table:
-    """Observed order of convergence of the finite element operator beside its design order."""
-
+def _design_table(orders: Sequence[DesignOrder]) -> Table:
     def observed(value: float, one: DesignOrder) -> Cell:
         return number(value, "{:.2f}".format, "flag agrees" if one.as_designed else "flag disagrees")
 
@@ -93,8 +90,7 @@ def design_table(orders: Sequence[DesignOrder]) -> Table:
     )
 
 
-def parameter_table(results: Sequence[CaseResult]) -> Table:
-    """The numerical parameter that dominates the uncertainty of each scalar, counted over the cases."""
+def _parameter_table(results: Sequence[CaseResult]) -> Table:
     counts: dict[tuple[str, str], Counter[str]] = {}
     for result in results:
         for source in result.sources:
@@ -113,8 +109,7 @@ def parameter_table(results: Sequence[CaseResult]) -> Table:
     )
 
 
-def pair_table(results: Sequence[CaseResult]) -> Table:
-    """Comparisons of each pair of sources: how many agree, the largest difference, the least margin."""
+def _pair_table(results: Sequence[CaseResult]) -> Table:
     verdicts = [(c, v) for result in results for c, v in result.verdicts]
     rows = []
     for pair in dict.fromkeys(claim.between for claim, _ in verdicts):
@@ -130,9 +125,7 @@ def pair_table(results: Sequence[CaseResult]) -> Table:
     )
 
 
-def import_table(parts: Sequence[Imports]) -> Table:
-    """Imports of each part from outside, with those that are forbidden."""
-
+def _import_table(parts: Sequence[Imports]) -> Table:
     def forbidden(part: Imports) -> Cell:
         bad = [*part.forbidden, *part.hidden]
         return Cell("; ".join(bad) or "none", css=f"words flag {'disagrees' if bad else 'agrees'}")
@@ -150,9 +143,8 @@ def import_table(parts: Sequence[Imports]) -> Table:
     )
 
 
-def alarm_table(record: AlarmRecord | None) -> Table:
-    """The false alarms on record."""
-    alarms = record.alarms if record is not None else ()
+def _alarm_table(record: AlarmRecord | None) -> Table:
+    alarms = record.alarms if record else ()
     more = f" The first {MOST} of {len(alarms)}." if len(alarms) > MOST else ""
     return table_of(
         f"Verdicts of clean problems that are not AGREES.{more}",
@@ -186,20 +178,22 @@ def section(material: Material) -> Section | None:
     contacts = material.contacts
     parts = [
         Part(stated("evidence")),
-        Part(stated("intended"), [range_table(contacts)], title="1. Intended use and limits"),
-        Part(stated("code"), [design_table(evidence.orders)], title="2. Code verification"),
+        Part(stated("intended"), [_range_table(contacts)], title="1. Intended use and limits"),
+        Part(stated("code"), [_design_table(evidence.orders)], title="2. Code verification"),
         Part(
             stated("solution", found=_bracketed(contacts)),
-            [coverage_table(contacts), parameter_table(contacts)],
+            [coverage_table(contacts), _parameter_table(contacts)],
             title="3. Solution verification",
         ),
         Part(
             f"{_compared(results)} {_enclosed(evidence)}",
-            [pair_table(results)],
+            [_pair_table(results)],
             title="4. Comparison with references and between methods",
         ),
         Part(
-            _independent(evidence), [import_table(evidence.parts)], title="5. Independence of the two methods"
+            _independent(evidence),
+            [_import_table(evidence.parts)],
+            title="5. Independence of the two methods",
         ),
         Part(
             stated("shared_equation"),
@@ -208,7 +202,7 @@ def section(material: Material) -> Section | None:
         Part(stated("tested_patches"), folded="What comparisons of a sphere test of the patches"),
         Part(_faults(evidence), [], title="6. Fault detection"),
         Part(_alarms(evidence), [], _histograms(evidence), "7. False alarms"),
-        Part("", [alarm_table(evidence.alarms)], folded="Verdicts of clean problems that are not AGREES"),
+        Part("", [_alarm_table(evidence.alarms)], folded="Verdicts of clean problems that are not AGREES"),
         Part(stated("not_claimed"), title="8. Not claimed"),
     ]
     return Section("credibility", "Credibility", parts, evidence.failures)

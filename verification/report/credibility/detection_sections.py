@@ -1,5 +1,6 @@
 """What the checks detect: planted faults, self-tests of the harness."""
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import partial
 
@@ -15,7 +16,7 @@ from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record
 from verification.evidence.fault_record import Row as Fault
 from verification.page.html_page import render_sections
 from verification.page.number_text import plain, scientific, seconds
-from verification.page.page_parts import Cell, Part, Section, Table, Value, table_of, words
+from verification.page.page_parts import Cell, Part, Section, Table, Value, row, table_of, words
 from verification.page.source_labels import source_label
 from verification.report.report_material import Material
 from verification.report.report_words import stated
@@ -71,8 +72,8 @@ def faults_section(record: Record) -> Section:
         "time": seconds(record.core_seconds),
     }
     parts = [Part(stated("planting", **made)), Part(faults_message(record), [_score(record)])]
-    if never := [row for row in of_method(record) if unused(row)]:
-        names = "; ".join(f"{row.name}: {row.description}" for row in never)
+    if never := [fault for fault in of_method(record) if unused(fault)]:
+        names = "; ".join(f"{fault.name}: {fault.description}" for fault in never)
         parts.append(
             Part(f"No run executes what these faults change, an argument for a further case. {names}.")
         )
@@ -83,14 +84,16 @@ def faults_section(record: Record) -> Section:
     if record.controls:
         text = "Negative controls, the same trials with nothing planted: any detection is a false alarm."
         parts.append(Part(text, [_controls(record.controls)]))
-    parts.append(Part(_explained(record), title="Faults against checks"))
+    columns = "; ".join(f"“{title}”: {text}" for title, text in COLUMNS.items())
+    explained = stated("cells", blind=sum(map(_only_coated, record.rows)), columns=columns)
+    parts.append(Part(explained, title="Faults against checks"))
     parts += [
         Part("", [_matrix(rows, title)], folded=f"{title}, {len(rows)} faults")
         for title, rows in _groups(record)
     ]
-    failures = [f"{row.name} changes no number, so it is not a fault." for row in record.idle]
-    failures += [f"{row.name}, a negative control, is detected: {row.by}" for row in record.alarms]
-    failures += [f"{row.name}: {row.failure}" for row in record.rows if row.failure]
+    failures = [f"{one.name} changes no number, so it is not a fault." for one in record.idle]
+    failures += [f"{one.name}, a negative control, is detected: {one.by}" for one in record.alarms]
+    failures += [f"{one.name}: {one.failure}" for one in record.rows if one.failure]
     failures += [
         f"Fails without any fault, so that it is no evidence: {check}" for check in record.failing_clean
     ]
@@ -116,22 +119,6 @@ def faults_page(record: Record) -> str:
     )
 
 
-def _explained(record: Record) -> str:
-    columns = "; ".join(f"“{title}”: {text}" for title, text in COLUMNS.items())
-    blind = sum(_only_coated(row) for row in record.rows)
-    first = (
-        f"{blind} faults pass every comparison of the uncoated cases, including Hertz and Hamilton, and are "
-        "detected on coated cases only. "
-        if blind
-        else ""
-    )
-    return (
-        f"{first}Each cell counts the checks that do not pass, of those that were made: ✓ a disagreement, "
-        "? an uncertainty beyond its cap, ∅ no result. An empty cell: not checked, since the "
-        f"fault does not affect it. The columns: {columns}."
-    )
-
-
 def _only_coated(row: Fault) -> bool:
     """True where comparisons on uncoated cases all pass and some on coated ones do not."""
     bare = [seen for column, seen in row.columns.items() if column.startswith("bare")]
@@ -140,38 +127,24 @@ def _only_coated(row: Fault) -> bool:
     return bool(bare) and passed and any(seen.disagree + seen.inconclusive for seen in coated)
 
 
-def _groups(record: Record) -> list[tuple[str, list[Fault]]]:
+def _groups(record: Record) -> list[tuple[str, Sequence[Fault]]]:
     """Title and faults of each group that has any."""
-    groups = [
-        (title, [fault for fault in record.rows if fault.group == key]) for key, title in GROUPS.items()
-    ]
+    groups = ((title, [row for row in record.rows if row.group == key]) for key, title in GROUPS.items())
     return [(title, faults) for title, faults in groups if faults]
 
 
 def _score(record: Record) -> Table:
     shown = [kind for kind in Noticed if any(noticed(fault) is kind for fault in record.rows)]
     groups = _groups(record)
-    columns: list[tuple[str, Callable[[tuple[str, list[Fault]]], Value]]] = [
-        ("group", lambda group: group[0]),
-        ("faults", lambda group: len(group[1])),
-        *((str(kind), partial(_count, kind=kind)) for kind in shown),
-        ("detected", lambda group: _percent(sum(fault.caught for fault in group[1]) / len(group[1]))),
-        ("predicted check", lambda group: sum(fault.as_predicted for fault in group[1])),
-    ]
-    return table_of(
-        stated("noticed"),
-        [*groups, *([("All", list(record.rows))] if len(groups) > 1 else [])],
-        columns,
-    )
-
-
-def _count(group: tuple[str, list[Fault]], kind: Noticed) -> Cell:
-    found = sum(noticed(fault) is kind for fault in group[1])
-    return Cell(str(found or "–"), found)
-
-
-def _percent(share: float) -> Cell:
-    return Cell(f"{plain(100 * share, 3)} %", share)
+    rows = []
+    for title, faults in [*groups, *([("All", record.rows)] if len(groups) > 1 else [])]:
+        counted = Counter(map(noticed, faults))
+        share = sum(fault.caught for fault in faults) / len(faults)
+        cells = [Cell(str(counted[kind] or "–"), counted[kind]) for kind in shown]
+        cells.append(Cell(f"{plain(100 * share, 3)} %", share))
+        rows.append(row(title, len(faults), *cells, sum(fault.as_predicted for fault in faults)))
+    heads = ["group", "faults", *map(str, shown), "detected", "predicted check"]
+    return Table(stated("noticed"), heads, rows)
 
 
 def _survivors(record: Record) -> Table:

@@ -12,7 +12,7 @@ from verification.credibility.model_error import WORDS as NAMES
 from verification.evidence.assumption_maps import WORDS, AssumptionMap
 from verification.page.number_text import plain
 from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row, written
-from verification.page.svg_plot import level_map, tint
+from verification.page.svg_plot import Axes, drawing
 from verification.problem.array_types import Array
 from verification.report.report_material import Material
 from verification.sources.assumptions.contact_change import SCALARS
@@ -20,14 +20,13 @@ from verification.sources.assumptions.contact_change import SCALARS
 LEVELS = (0.001, 0.01, 0.05)
 SHADES = (0.15, 0.4, 0.75)
 COLOUR, NO_ANSWER = "fem", 0.45
-ACROSS, UP = "thickness", "ratio"
 SHORT = {"contact_radius": "a", "approach": "delta", "peak_pressure": "p0"}
 THICKNESSES = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)  # ticks
 USUAL = {"nu": 0.3}  # coordinate of a panel, where the map has it
 
 
 def section(material: Material) -> Section | None:
-    """A conclusion with the reach of each assumption, then its maps; None without a record."""
+    """As ``parts``; None without a record."""
     record = material.evidence.maps
     if record is None or not record.maps:
         return None
@@ -44,7 +43,7 @@ def _conclusion(maps: Sequence[AssumptionMap]) -> str:
     texts = []
     for words, scalar in (("p0, delta and the contact radius", True), ("the stresses", False)):
         limits = []
-        for one in (one for one in maps if one.driver is not None):
+        for one in maps:
             reaches = [one.reach(i, LEVELS[1]) for i in _measured(one, scalar=scalar)]
             if known := [reach for reach in reaches if reach is not None]:
                 limits.append(f"{_coordinate(one)} = {plain(min(known), 2)} ({one.title})")
@@ -66,16 +65,15 @@ def _measured(one: AssumptionMap, *, scalar: bool | None = None) -> list[int]:
 
 
 def _coordinate(one: AssumptionMap) -> str:
-    """The coordinate that the change grows with; "" where no rate is stated."""
-    return "" if one.driver is None else WORDS[one.axes[one.driver].name]
+    """The coordinate that the change grows with."""
+    return WORDS[one.axes[one.driver].name]
 
 
 def _reaches(maps: Sequence[AssumptionMap]) -> Table:
     """Where each quantity reaches the levels, an assumption below the other."""
-    shown = [one for one in maps if one.driver is not None]
-    names = list(dict.fromkeys(one.quantities[i] for one in shown for i in _measured(one)))
+    names = list(dict.fromkeys(one.quantities[i] for one in maps for i in _measured(one)))
     rows = []
-    for one in shown:
+    for one in maps:
         known = {one.quantities[i]: i for i in _measured(one)}
         for level in LEVELS:
             cells: list[Cell] = []
@@ -115,26 +113,26 @@ def _part(one: AssumptionMap) -> Part:
         f"{one.machine}, over {', '.join(_extent(axis.name, axis.values) for axis in one.axes)}."
     )
     title = one.title[0].upper() + one.title[1:]
-    drawable = {axis.name: axis.values for axis in one.axes if len(axis.values) > 1}
-    if not {ACROSS, UP} <= drawable.keys():
-        return Part(text, [_largest(one), _numbers(one)], title=title)
     at = _slice(one)
-    x, y, planes = one.plane(ACROSS, UP, at)
+    x, y, planes = one.plane(at)
     panels = []
     for quantity, plane in zip(one.quantities, planes, strict=True):
         if np.isfinite(plane).any():
             name = NAMES.get(quantity, quantity)
             span = f"from {_percent(float(np.nanmin(plane)))} to {_percent(float(np.nanmax(plane)))}"
-            panels.append(Panel(name, _draw(x, y, plane, f"{one.title}: {name}"), span, ""))
+            panels.append(Panel(name, _draw(x, y, plane, f"{one.title}: {name}"), span))
     legend = [
-        (tint(COLOUR, 0.0), f"below {_percent(LEVELS[0])}"),
-        (tint("muted", NO_ANSWER), "no answer of the model"),
+        (_tint(COLOUR, 0.0), f"below {_percent(LEVELS[0])}"),
+        (_tint("muted", NO_ANSWER), "no answer of the model"),
     ]
     legend += [
-        (tint(COLOUR, shade), f"above {_percent(level)}") for level, shade in zip(LEVELS, SHADES, strict=True)
+        (_tint(COLOUR, shade), f"above {_percent(level)}")
+        for level, shade in zip(LEVELS, SHADES, strict=True)
     ]
     fixed = ", ".join(
-        f"{WORDS[name]} = {at[name]:g}" for name in at if name in drawable and name not in (ACROSS, UP)
+        f"{WORDS[axis.name]} = {at[axis.name]:g}"
+        for axis in one.axes
+        if axis.name in at and len(axis.values) > 1
     )
     caption = f"Relative change{f' at {fixed}' if fixed else ''}, linear between the nodes."
     return Part(text, [_largest(one)], Gallery(legend, panels, caption, written(_rows(one))), title)
@@ -144,7 +142,7 @@ def _slice(one: AssumptionMap) -> dict[str, float]:
     """Coordinates of the panels: of the driver where a typical change is nearest to the last level."""
     at = {}
     for i, axis in enumerate(one.axes):
-        if axis.name in (ACROSS, UP):
+        if axis.name in ("thickness", "ratio"):
             continue
         if i == one.driver:
             size = np.median(one.largest[_measured(one)], axis=0)
@@ -157,13 +155,25 @@ def _slice(one: AssumptionMap) -> dict[str, float]:
 
 def _draw(x: Array, y: Array, plane: Array, label: str) -> Markup:
     size = np.ma.masked_invalid(np.abs(plane))
+    axes = Axes((48.0, 5.0, 266.0, 207.5), (x[0], x[-1]), (y[0], y[-1]))
     known = np.where(np.ma.getmaskarray(size), 0.0, 1.0)
-    bands = zip(pairwise((*LEVELS, 1e9)), SHADES, strict=True)
-    areas = [(known, -1.0, 0.999, "muted", NO_ANSWER)]
-    areas += [(size, low, high, COLOUR, shade) for (low, high), shade in bands]
-    contours = [(size, level, _percent(level)) for level in LEVELS]
-    ticks = (_ticks(THICKNESSES, x), _ticks((0.1, 0.25, 1, 4, 10), y))
-    return level_map(label, x, y, areas, contours, ticks, (WORDS[ACROSS], WORDS[UP]))
+    axes.filled(x, y, known, -1.0, 0.999, "muted", NO_ANSWER)
+    for (low, high), shade in zip(pairwise((*LEVELS, 1e9)), SHADES, strict=True):
+        axes.filled(x, y, size, low, high, COLOUR, shade)
+    for level in LEVELS:
+        if size.min() < level < size.max():
+            axes.contour(x, y, size, level, _percent(level))
+    axes.ticks(_ticks(THICKNESSES, x), _ticks((0.1, 0.25, 1, 4, 10), y), WORDS["thickness"])
+    axes.text(x[0], y[-1], WORDS["ratio"], by=(4, 13))
+    return drawing(320, 250, f"{label} over {WORDS['thickness']} and {WORDS['ratio']}", axes)
+
+
+def _tint(colour: str, shade: float) -> Markup:
+    """A small piece of a tinted area, for the legend."""
+    return Markup(
+        '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true"><rect x="1" y="0" width="34" height="10" '
+        'class="f-{} s-muted" stroke-width="1" fill-opacity="{}"/></svg>'
+    ).format(colour, shade)
 
 
 def _ticks(values: tuple[float, ...], shown: Array) -> list[tuple[float, str]]:
@@ -193,9 +203,3 @@ def _rows(one: AssumptionMap) -> list[list[str]]:
         heads,
         *([f"{v:g}" for v in (*at, *values)] for at, values in zip(places, columns.T, strict=True)),
     ]
-
-
-def _numbers(one: AssumptionMap) -> Table:
-    """The map as a table, where it has no plane to be drawn in."""
-    heads, *rows = _rows(one)
-    return Table("All places of the map.", heads, [row(*cells) for cells in rows])

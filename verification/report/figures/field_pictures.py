@@ -199,9 +199,8 @@ def _palette(scale: Scale) -> NDArray[np.uint8]:
 def _address(pixels: NDArray[np.uint8], ragged: bool = False) -> str:
     """``pixels`` as an image that carries itself; a ``ragged`` one nearly so, at a quarter of the size."""
     written = io.BytesIO()
-    options: dict[str, Any] = {"quality": 90} if ragged else {"lossless": True, "quality": 100}
-    picture = Image.fromarray(np.ascontiguousarray(pixels, dtype=np.uint8))
-    picture.save(written, "WEBP", method=4, **options)
+    picture = Image.fromarray(np.ascontiguousarray(pixels))
+    picture.save(written, "WEBP", method=4, lossless=not ragged, quality=90 if ragged else 100)
     return f"data:image/webp;base64,{base64.b64encode(written.getvalue()).decode()}"
 
 
@@ -238,24 +237,15 @@ def _bar(frame: Frame, scale: Scale) -> str:
 
 SHOWN = ("von_mises", "sigma_xx", "sigma_xz")
 TITLES = {"von_mises": "von Mises"}
-SEQUENTIAL, DIVERGING, DIFFERENCE = "viridis", "RdBu_r", "cividis"
 FLOOR, TOP = -8.0, -3.0  # exponents of the difference over p_h; the same in all cases, to be compared
 EVERY = 3  # of the columns in the table of numbers
 
 
-@dataclass(frozen=True)
-class Pictures:
-    """The quantities side by side, below them their differences, with caption and the numbers as CSV."""
+def pictures(result: CaseResult, plane: Plane | None) -> dict[str, Any] | None:
+    """Von Mises stress, sigma_xx and sigma_xz side by side, below them the differences of both methods.
 
-    panels: tuple[Panel, ...]
-    caption: str
-    csv: str
-    file: str
-    failures: tuple[tuple[str, str], ...]
-
-
-def pictures(result: CaseResult, plane: Plane | None) -> Pictures | None:
-    """Von Mises stress, sigma_xx and sigma_xz by every method; None where there is nothing to draw."""
+    With caption and the numbers as CSV; None where there is nothing to draw.
+    """
     a_h, p_h = float(scale_of(result, "a_h")), float(scale_of(result, "p_h"))
     if plane is None or not plane.stress or not a_h > 0 or not p_h > 0:
         return None
@@ -267,7 +257,7 @@ def pictures(result: CaseResult, plane: Plane | None) -> Pictures | None:
     def panel(values: Sequence[Array], colours: Scale, title: str, label: str, note: str) -> Panel:
         smooth = not colours.logarithmic
         raster = rasterised(x, depths, values, frame, smooth=smooth)
-        return Panel(title, draw_field(raster, frame, colours, label=label, lines=smooth), note, "")
+        return Panel(title, draw_field(raster, frame, colours, label=label, lines=smooth), note)
 
     fields, gaps = [], []
     for quantity in SHOWN:
@@ -280,20 +270,20 @@ def pictures(result: CaseResult, plane: Plane | None) -> Pictures | None:
         fields.append(panel(shown, _colours(quantity, shown), title, f"{title} by {name}", f"{name}, {span}"))
         if len(sources) == 2:
             apart = [np.abs(one - other) for one, other in zip(*by.values(), strict=True)]
-            largest = max((float(g.max()) for g in apart), default=0.0)
+            largest = max(float(g.max()) for g in apart)
             exponents = [np.log10(np.maximum(g, 10.0 ** (FLOOR - 1))) for g in apart]
             top = max(TOP, float(np.ceil(np.log10(largest)))) if 0 < largest < np.inf else TOP
-            colours = Scale(FLOOR, top, DIFFERENCE, logarithmic=True)
+            colours = Scale(FLOOR, top, "cividis", logarithmic=True)
             label = f"difference of both methods in {title}, logarithmic"
             note = f"largest {scientific(largest)}"
             gaps.append(panel(exponents, colours, f"difference in {title}", label, note))
-    return Pictures(
-        (*fields, *gaps),
-        stated("pictures", stretched=frame.stretched, both=len(sources) == 2),
-        plane_csv(plane),
-        f"{slug(result.name)}-plane.csv",
-        tuple((source_label(name), message) for name, message in plane.failures.items()),
-    )
+    return {
+        "panels": [*fields, *gaps],
+        "caption": stated("pictures", stretched=frame.stretched, both=len(sources) == 2),
+        "csv": plane_csv(plane),
+        "file": f"{slug(result.name)}-plane.csv",
+        "failures": [(source_label(name), message) for name, message in plane.failures.items()],
+    }
 
 
 def plane_csv(plane: Plane) -> str:
@@ -315,16 +305,13 @@ def _quantity(sigma: Array, name: str) -> Array:
     return von_mises(sigma) if name == "von_mises" else sigma[list(IN_PLANE).index(name)]
 
 
-def plane_difference(plane: Plane, scale: float) -> tuple[float, str] | None:
-    """Largest difference of the methods anywhere in the plane over ``scale``, with the stress it is of."""
+def plane_difference(plane: Plane, scale: float) -> float | None:
+    """Largest difference of the methods in any stress anywhere in the plane, over ``scale``."""
     if len(plane.stress) != 2 or not scale > 0:
         return None
-    one, other = plane.stress.values()
-    gaps = [np.abs(a - b).max(axis=(1, 2)) for a, b in zip(one, other, strict=True) if a.size]
-    largest = np.max(gaps, axis=0) / scale if gaps else np.zeros(1)
-    if not np.isfinite(largest).all():
-        return None
-    return float(largest.max()), list(IN_PLANE)[int(largest.argmax())]
+    pairs = zip(*plane.stress.values(), strict=True)
+    largest = np.max([np.abs(one - other).max() for one, other in pairs]) / scale
+    return float(largest) if np.isfinite(largest) else None
 
 
 def _colours(quantity: str, values: Sequence[Array]) -> Scale:
@@ -334,5 +321,5 @@ def _colours(quantity: str, values: Sequence[Array]) -> Scale:
     )
     largest = largest or 1.0
     if quantity == "von_mises":
-        return Scale(0.0, largest, SEQUENTIAL)
-    return Scale(-largest, largest, DIVERGING)
+        return Scale(0.0, largest, "viridis")
+    return Scale(-largest, largest, "RdBu_r")

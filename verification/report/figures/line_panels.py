@@ -1,7 +1,6 @@
 """The figures of a case: one panel for each quantity on each line."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup, escape
@@ -12,12 +11,11 @@ from verification.page.page_parts import Panel
 from verification.page.source_labels import pair_label, pair_style, source_label, source_style, symbol_of
 from verification.page.svg_curves import Curve, Difference, draw
 from verification.page.svg_plot import MARKS
-from verification.problem.line_profile import ON_BALL
+from verification.problem.line_profile import ON_BALL, coordinate_of
 from verification.problem.quantity import QUANTITIES
 from verification.report.report_words import stated
 from verification.report.tables.case_lookup import (
     contact_radius,
-    coordinate,
     difference,
     reference_source,
     scale,
@@ -38,72 +36,53 @@ FIRST = (
     ("sigma_xx", "interface 1, lower side"),
     ("sigma_xz", "interface 1, upper side"),
 )
-CHOSEN = (
-    *FIRST,
-    ("sigma_zz", "axis"),
-    ("sigma_xx", f"{ON_BALL}surface"),
-    ("u_z", "oblique surface"),
-)
+CHOSEN = (*FIRST, ("sigma_zz", "axis"), ("sigma_xx", f"{ON_BALL}surface"), ("u_z", "oblique surface"))
 
 
-@dataclass(frozen=True)
-class CaseFigures:
-    """The panels of one case, with a legend each for the curves and for the differences."""
+def case_figures(result: CaseResult) -> dict[str, Any] | None:
+    """Panels of what does not agree, then of what is looked at first; None of a case without profiles.
 
-    panels: tuple[Panel, ...]
-    curves: tuple[tuple[Markup, str], ...]
-    differences: tuple[tuple[Markup, str], ...]
-    caption: str
-
-
-def case_figures(result: CaseResult) -> CaseFigures | None:
-    """Panels of what does not agree, then of what is looked at first; None of a case without profiles."""
+    They have a legend for the curves, one for the differences, and a caption.
+    """
     drawable = {(p.quantity, p.line) for p in result.profiles if p.line != "contact"}
-    bad = [
-        (c.quantity, c.line)
-        for c, v in result.verdicts
-        if v.outcome is not Outcome.AGREES and (c.quantity, c.line) in drawable
-    ]
-    chosen = [place for place in CHOSEN if place in drawable]
-    places = list(dict.fromkeys([*list(dict.fromkeys(bad))[:MOST_FAILING], *chosen]))
-    places = places[: max(MOST, MOST_FAILING)]
+    bad = dict.fromkeys((c.quantity, c.line) for c, v in result.verdicts if v.outcome is not Outcome.AGREES)
+    failing = [place for place in bad if place in drawable][:MOST_FAILING]
+    places = list(dict.fromkeys([*failing, *(place for place in CHOSEN if place in drawable)]))[:MOST]
     places = places[: len(places) // 3 * 3] if len(places) > 3 else places  # whole rows of three
     if not places:
         return None
-    pairs = list(dict.fromkeys(pair for quantity, line in places for pair in _pairs(result, line, quantity)))
-    sources = [s for s in sources_with_profiles(result) if any(p.source == s for p in result.profiles)]
+    pairs = dict.fromkeys(pair for quantity, line in places for pair in _pairs(result, line, quantity))
+    sources = sources_with_profiles(result)
     base = next((s for s in sources if source_style(s).width > 3), None)
-    return CaseFigures(
-        tuple(_panel(result, line, quantity) for quantity, line in places),
-        tuple((swatch(source_style(s), marked=s != base), source_label(s)) for s in sources),
-        tuple((swatch(pair_style(pair)), pair_label(pair)) for pair in pairs),
-        _caption(result, places),
-    )
+    shown = [(claim, verdict) for claim, verdict in result.verdicts if (claim.quantity, claim.line) in places]
+    together = all(verdict.outcome is Outcome.AGREES for _, verdict in shown)
+    return {
+        "panels": [_panel(result, line, quantity) for quantity, line in places],
+        "curves": [(swatch(source_style(s), marked=s != base), source_label(s)) for s in sources],
+        "differences": [(swatch(pair_style(pair)), pair_label(pair)) for pair in pairs],
+        "caption": stated("panels", together=together, edge=any(claim.edge for claim, _ in shown)),
+    }
 
 
 def swatch(style: Style, *, marked: bool = False) -> Markup:
     """A short piece of a line as the figures draw it, or its mark."""
     if marked:
-        return Markup(
-            '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true">'
-            '<path d="M18 5{}" class="point s-{}"/></svg>'
-        ).format(MARKS[style.marker], style.colour)
-    dash = " ".join(f"{length * style.width:.1f}" for length in style.dash)
-    return Markup(
-        '<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true"><path d="M1 5h34" class="s-{}" '
-        'stroke-width="{}" stroke-dasharray="{}" stroke-opacity="{}"/></svg>'
-    ).format(style.colour, style.width, dash or "none", style.opacity)
+        path = f'<path d="M18 5{MARKS[style.marker]}" class="point s-{style.colour}"/>'
+    else:
+        dash = " ".join(f"{length * style.width:.1f}" for length in style.dash) or "none"
+        path = (
+            f'<path d="M1 5h34" class="s-{style.colour}" stroke-width="{style.width}" '
+            f'stroke-dasharray="{dash}" stroke-opacity="{style.opacity}"/>'
+        )
+    return Markup(f'<svg class="swatch" viewBox="0 0 36 10" aria-hidden="true">{path}</svg>')
 
 
 def _pairs(result: CaseResult, line: str, quantity: str) -> list[tuple[str, str]]:
     """The claimed pairs that are drawn: methods with each other, sources with the reference source."""
     best = reference_source(result)
     claimed = [c.between for c, _ in result.verdicts if (c.quantity, c.line) == (quantity, line)]
-    return [
-        pair
-        for pair in dict.fromkeys(claimed)
-        if best in pair or set(pair) <= set(METHODS) or not set(pair) & set(METHODS)
-    ]
+    # not a method with another source than the reference
+    return [pair for pair in dict.fromkeys(claimed) if best in pair or len(set(pair) & set(METHODS)) != 1]
 
 
 def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
@@ -123,7 +102,7 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
         if found is None or first is None:
             continue
         gap, uncertainty = found
-        failed = verdict.outcome is not Outcome.AGREES and verdict.worst is not None
+        failed = verdict.outcome is not Outcome.AGREES
         worst = verdict.worst / a_h if failed and verdict.worst is not None else None
         vague = verdict.outcome is Outcome.INCONCLUSIVE
         differences.append(Difference(first.position / a_h, gap, uncertainty, pair_style(pair), worst, vague))
@@ -133,18 +112,17 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
         curves,
         differences,
         label=f"{symbol_of(quantity)} on {line} by every source, with differences",
-        coordinate=f"{coordinate(line)} / a_h",
+        coordinate=f"{coordinate_of(line)} / a_h",
         cap=cap,
         unjudged=zones,
         data=f'data-quantity="{escape(quantity)}" data-line="{escape(line)}"',
     )
-    bad = [(c, v) for c, v in claims if v.outcome is not Outcome.AGREES]
+    bad = [v for _, v in claims if v.outcome is not Outcome.AGREES]
     largest = max((v.difference for _, v in claims if v.difference is not None), default=None)
-    note = f"largest difference {scientific(largest)}"
+    note = f"largest difference {scientific(largest)}" if claims else "not compared"
     if bad:
         note = f"{len(bad)} of {len(claims)} do not agree, difference {scientific(largest)}"
-    title = f"{symbol_of(quantity)} / {unit}, {line}"
-    return Panel(title, figure, note if claims else "not compared", "fails" if bad else "")
+    return Panel(f"{symbol_of(quantity)} / {unit}, {line}", figure, note, "fails" if bad else "")
 
 
 def _unjudged(result: CaseResult, claims: list[Claim], curves: list[Curve]) -> list[tuple[float, float]]:
@@ -156,11 +134,3 @@ def _unjudged(result: CaseResult, claims: list[Claim], curves: list[Curve]) -> l
     low = min(float(np.min(curve.position, initial=0.0)) for curve in curves)
     high = max(float(np.max(curve.position, initial=0.0)) for curve in curves)
     return [span for span in ((-outer, -inner), (inner, outer)) if span[1] > low and span[0] < high]
-
-
-def _caption(result: CaseResult, places: Sequence[tuple[str, str]]) -> str:
-    """What to see in the panels."""
-    verdicts = [v for c, v in result.verdicts if (c.quantity, c.line) in places]
-    together = all(v.outcome is Outcome.AGREES for v in verdicts)
-    edge = any(claim.edge for claim, _ in result.verdicts if (claim.quantity, claim.line) in places)
-    return stated("panels", together=together, edge=edge)

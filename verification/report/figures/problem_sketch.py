@@ -12,11 +12,7 @@ from verification.report.tables.case_lookup import INDENTERS, contact_radius, la
 from verification.running.case_result import CaseResult
 
 HTML = Path(__file__).parents[1] / "html"
-HEIGHT, BLOCK, SURFACE = (
-    250.0,
-    216.0,
-    92.0,
-)  # of the drawing, width of the solid, its top; units of the drawing
+HEIGHT, BLOCK, SURFACE = 250.0, 216.0, 92.0  # of the drawing; width of the solid, its top; drawing units
 THINNEST, STEP = 4.0, 44.0  # a layer at least, a label
 SHALLOWEST, DEEPEST = 1.6, 4.0  # over a_h
 

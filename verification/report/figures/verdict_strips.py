@@ -15,6 +15,7 @@ from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.source_labels import OUTCOMES
 from verification.page.svg_plot import polyline
 from verification.page.symbol_text import drawn, unicode
+from verification.running.case_result import CaseResult
 
 WIDTH, HEIGHT = 560.0, 22.0
 INSET = 2.0  # of the lanes from the edges of a strip
@@ -40,6 +41,11 @@ class Item:
         """U over the same scale; None where none is stated."""
         found = self.verdict.uncertainty
         return found if found is not None and isfinite(found) and found >= 0 else None
+
+
+def items_of(result: CaseResult) -> list[Item]:
+    """The comparisons of a case."""
+    return [Item(claim, verdict) for claim, verdict in result.verdicts]
 
 
 @dataclass(frozen=True)
@@ -88,7 +94,8 @@ def draw_strip(items: Sequence[Item], axis: Axis, label: str, anchor: str = "") 
     lanes = ordered(items)
     lane = (HEIGHT - 2 * INSET) / max(len(lanes), 1)
     middles = [INSET + lane * (n + 0.5) for n in range(len(lanes))]
-    parts = [f'<path d="{_decades(axis)}" class="s-grid" stroke-width=".8"/>', _bars(lanes, lane, axis)]
+    decades = "".join(f"M{axis.place(10.0**n):.1f} 0v{HEIGHT:g}" for n in range(axis.low, axis.high + 1))
+    parts = [f'<path d="{decades}" class="s-grid" stroke-width=".8"/>', _bars(lanes, lane, axis)]
     parts.append(f'<path d="{_caps(lanes, lane, axis)}" class="s-cap" stroke-width="1.3"/>')
     for outcome in reversed(OUTCOMES):
         found = [
@@ -121,11 +128,6 @@ def draw_axis(axis: Axis) -> Markup:
     return Markup(
         f'<svg class="strip scale" viewBox="-14 0 {WIDTH + 28:g} 16" aria-hidden="true">{texts}</svg>'
     )
-
-
-def _decades(axis: Axis) -> str:
-    places = (axis.place(10.0**n) for n in range(axis.low, axis.high + 1))
-    return "".join(f"M{x:.1f} 0v{HEIGHT:g}" for x in places)
 
 
 def _bars(lanes: Sequence[Item], lane: float, axis: Axis) -> str:

@@ -1,6 +1,6 @@
 """Error of each method against the exact reference beside the uncertainty it states."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 
@@ -10,14 +10,13 @@ from verification.judging.verdict import Claim
 from verification.page.number_text import factor, plain, scientific
 from verification.page.page_parts import Cell, Part, Section, Table, number, row, tally, words
 from verification.page.source_labels import source_label, symbol_of
+from verification.problem.line_profile import ON_BALL, Profile
 from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.report.report_material import Material
 from verification.report.report_words import stated
 from verification.report.tables.case_lookup import (
-    GROUPS,
     case_cell,
     difference,
-    group_of,
     judged,
     reference_source,
     sources_with_profiles,
@@ -25,6 +24,8 @@ from verification.report.tables.case_lookup import (
 from verification.running.case_result import CaseResult
 from verification.sources.source_registry import METHODS, REFERENCES
 
+# Columns of lines in the overview.
+GROUPS = ("surface", "axis", "interfaces", "off plane")
 # Ratio of stated to true error below which an estimate counts as wrong.
 TOO_SMALL = 0.5
 # Share of quantities whose true error an uncertainty must cover, the level at which it is usually stated.
@@ -61,13 +62,12 @@ class Accuracy:
 
 def section(material: Material) -> Section | None:
     """How often the stated uncertainty covers the true error, then the errors of each method."""
-    results = material.contacts
     parts = [
         Part("", [overview], folded=f"Errors of {source_label(source)}, case by case")
         for source in METHODS
-        if (overview := accuracy_overview(results, material.anchors, source))
+        if (overview := accuracy_overview(material, source))
     ]
-    coverage = Part("", [coverage_table(results)])
+    coverage = Part("", [coverage_table(material.contacts)])
     return Section("accuracy", "Accuracy against the exact reference", [coverage, *parts]) if parts else None
 
 
@@ -77,49 +77,45 @@ def accuracies(result: CaseResult) -> tuple[Accuracy, ...]:
     exact = reference_source(result)
     if exact not in REFERENCES:
         return ()
-    edges = {(c.quantity, c.line): c for c, _ in result.verdicts}
-    found = []
-    for source in sources_with_profiles(result):
-        if source not in METHODS:
-            continue
-        for profile in result.profiles:
-            claim = edges.get((profile.quantity, profile.line))
-            if profile.source == source and claim is not None:
-                found.append(_accuracy(result, claim, source, exact))
+    claims = {(claim.quantity, claim.line): claim for claim, _ in result.verdicts}
+    found = (
+        _accuracy(result, claims[profile.quantity, profile.line], profile, exact)
+        for source in sources_with_profiles(result)
+        for profile in result.profiles
+        if profile.source == source in METHODS and (profile.quantity, profile.line) in claims
+    )
     return tuple(item for item in found if item is not None)
 
 
-def _accuracy(result: CaseResult, claim: Claim, source: str, exact: str) -> Accuracy | None:
-    mine = result.profile_of.get((claim.quantity, claim.line, source))
-    theirs = result.profile_of.get((claim.quantity, claim.line, exact))
-    found = difference(result, mine, theirs)
-    if found is None or mine is None:
+def _accuracy(result: CaseResult, claim: Claim, mine: Profile, exact: str) -> Accuracy | None:
+    found = difference(result, mine, result.profile_of.get((claim.quantity, claim.line, exact)))
+    if found is None:
         return None
     error, uncertainty = found
     here = judged(result, claim, mine.position) & np.isfinite(error)
     if not here.any():
         return None
     worst = int(np.argmax(np.where(here, error, -1.0)))
-    if uncertainty is None:
-        return Accuracy(source, claim.quantity, claim.line, float(error[worst]), None, None)
-    ratio = np.where(error > 0, uncertainty / np.where(error > 0, error, 1.0), np.inf)
-    smallest = float(np.min(np.where(np.isfinite(uncertainty), ratio, 0.0)[here]))
-    estimate = float(uncertainty[worst])
-    return Accuracy(source, claim.quantity, claim.line, float(error[worst]), estimate, smallest)
+    estimate = smallest = None
+    if uncertainty is not None:
+        ratio = np.where(error > 0, uncertainty / np.where(error > 0, error, 1.0), np.inf)
+        smallest = float(np.min(np.where(np.isfinite(uncertainty), ratio, 0.0)[here]))
+        estimate = float(uncertainty[worst])
+    return Accuracy(mine.source, claim.quantity, claim.line, float(error[worst]), estimate, smallest)
 
 
-def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], source: str) -> Table:
-    """The errors of one method over all cases, the worst quantity of each group; None where there is none."""
-    columns = [*SCALARS, *SLOPES, *PEAKS, *GROUPS[1:]]
+def accuracy_overview(material: Material, source: str) -> Table:
+    """The errors of one method over all cases, the worst quantity of each group."""
+    columns = [*SCALARS, *SLOPES, *PEAKS, *GROUPS]
     rows = []
-    for result in results:
+    for result in material.contacts:
         found = [item for item in accuracies(result) if item.source == source]
         if not found:
             continue
         cells = [
-            _overview_cell([i for i in found if name in (i.quantity, group_of(i.line))]) for name in columns
+            _overview_cell([i for i in found if name in (i.quantity, _group_of(i.line))]) for name in columns
         ]
-        rows.append(row(case_cell(result, f"#{anchors[result]}-comparisons"), *cells))
+        rows.append(row(case_cell(result, f"#{material.anchors[result]}-comparisons"), *cells))
     return Table(
         f"Error of {source_label(source)} against the exact reference, then the uncertainty it states for "
         "the same point. Marked where the estimate is below the error (▼) or below half of it (▼▼).",
@@ -127,6 +123,13 @@ def accuracy_overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult
         rows,
         css="overview",
     )
+
+
+def _group_of(line: str) -> str:
+    line = line.removeprefix(ON_BALL)
+    if line.startswith("interface"):
+        return "interfaces"
+    return "off plane" if line in ("oblique", "oblique surface") else line
 
 
 def _overview_cell(found: Sequence[Accuracy]) -> Cell:
@@ -144,7 +147,7 @@ def _overview_cell(found: Sequence[Accuracy]) -> Cell:
 
 def coverage_table(results: Sequence[CaseResult]) -> Table:
     """How often the uncertainty that a method states covers its true error, scalars and lines apart."""
-    rows, columns = [], ["method", "quantities", "covered", "share", "largest error / U"]
+    rows = []
     scalar_names = ", ".join(QUANTITIES[name].symbol for name in SCALARS + SLOPES)
     for source in METHODS:
         for name, scalars in ((scalar_names, True), ("stresses, pressure, displacements", False)):
@@ -156,26 +159,23 @@ def coverage_table(results: Sequence[CaseResult]) -> Table:
             ]
             if not found:
                 continue
-            share = sum(item.covered for _, item in found) / len(found)
+            covered = sum(item.covered for _, item in found)
+            share = covered / len(found)
+            css = f"flag {'agrees' if share >= COVERED else 'disagrees'}"
             case, worst = min(found, key=lambda pair: -1.0 if pair[1].ratio is None else pair[1].ratio)
             ratios = [item.ratio for _, item in found if item.ratio is not None and np.isfinite(item.ratio)]
             rows.append(
                 row(
                     source_label(source),
                     name,
-                    tally(sum(item.covered for _, item in found), len(found)),
-                    Cell(
-                        f"{100 * share:.1f} %", share, f"flag {'agrees' if share >= COVERED else 'disagrees'}"
-                    ),
+                    tally(covered, len(found)),
+                    Cell(f"{100 * share:.1f} %", share, css),
                     number(1 / worst.ratio, partial(plain, digits=2)) if worst.ratio else "not stated",
                     words(f"{symbol_of(worst.quantity)} on {worst.line}, {case.title}"),
                     number(float(np.median(ratios)) if ratios else None, partial(factor, better=1.0)),
                     number(max(item.error for _, item in found)),
                 )
             )
-    return Table(
-        stated("coverage", share=f"{100 * COVERED:.0f}"),
-        [*columns, "there", "median U / error", "largest error"],
-        rows,
-        css="overview",
-    )
+    heads = ["method", "quantities", "covered", "share", "largest error / U", "there"]
+    heads += ["median U / error", "largest error"]
+    return Table(stated("coverage", share=f"{100 * COVERED:.0f}"), heads, rows, css="overview")

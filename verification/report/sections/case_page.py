@@ -14,10 +14,10 @@ from verification.problem.coated_contact import BALL
 from verification.report.figures.field_pictures import pictures
 from verification.report.figures.line_panels import case_figures
 from verification.report.figures.problem_sketch import sketch
-from verification.report.figures.verdict_strips import Item, axis_of, draw_axis, draw_strip, ordered
+from verification.report.figures.verdict_strips import axis_of, draw_axis, draw_strip, items_of, ordered
 from verification.report.report_material import Material
 from verification.report.sections import invariants_section, published_section
-from verification.report.tables.case_lookup import contact_radius, divisor, layers, lines, scale, slug
+from verification.report.tables.case_lookup import contact_radius, divisor, layers, scale, slug
 from verification.report.tables.case_tables import (
     budget_table,
     comparison_table,
@@ -31,9 +31,6 @@ from verification.report.tables.case_tables import (
 from verification.report.tables.line_csv import line_csv
 from verification.running.case_result import CaseResult
 
-# A failed source fails every comparison; the list before the figures stays short.
-MOST_FAILING = 6
-
 
 def contents(material: Material, result: CaseResult) -> dict[str, Any]:
     """What the template of a case shows."""
@@ -46,7 +43,7 @@ def contents(material: Material, result: CaseResult) -> dict[str, Any]:
         "facts": facts(result),
         "failures": [(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
         "layers": [layer_table(result), *([layer_table(result, BALL)] if layers(result, BALL) else [])],
-        "failing": failing_table(result, scale(result, "a_h"), MOST_FAILING),
+        "failing": failing_table(result),
         "budget": budget_table(result),
         "diagnostics": diagnostics_table(result),
     }
@@ -65,7 +62,7 @@ def contents(material: Material, result: CaseResult) -> dict[str, Any]:
         "model": material.evidence.models.get(result.name),
         "files": [
             (line, line_csv(result, line), f"{file}-{slug(line)}.csv")
-            for line in (*(("contact",) if result.profiles else ()), *lines(result))
+            for line in dict.fromkeys(profile.line for profile in result.profiles)
         ],
         "broken": invariants_section.invariant_table(broken),
         "invariants": invariants_section.invariant_table(result.invariants),
@@ -98,10 +95,10 @@ def summary(result: CaseResult) -> str:
     broken = sum(one.outcome is not Outcome.AGREES for one in result.invariants)
     total, count = len(result.verdicts), len(result.invariants)
     text = f"{bad} of {total} comparisons do not agree" if bad else f"All {total} comparisons agree"
-    if count:
-        text += (
-            f", {broken} of {count} invariants do not hold" if broken else f", all {count} invariants hold"
-        )
+    if broken:
+        text += f", {broken} of {count} invariants do not hold"
+    elif count:
+        text += f", all {count} invariants hold"
     gaps = [v.difference for _, v in result.verdicts if v.difference is not None]
     if gaps:
         text += f"; the largest difference is {scientific(max(gaps))}"
@@ -110,7 +107,7 @@ def summary(result: CaseResult) -> str:
 
 def _strips(result: CaseResult, anchor: str) -> dict[str, Any] | None:
     """All comparisons of a case, a strip for each line."""
-    items = [Item(claim, verdict) for claim, verdict in result.verdicts]
+    items = items_of(result)
     if not items:
         return None
     axis = axis_of(items)
@@ -125,7 +122,7 @@ def _strips(result: CaseResult, anchor: str) -> dict[str, Any] | None:
 def data(material: Material) -> dict[str, Any]:
     """What the script of the page knows of the comparisons: names once, then rows of indices and numbers."""
     quantities: dict[str, int] = {}
-    lines_: dict[str, int] = {}
+    lines: dict[str, int] = {}
     pairs: dict[tuple[str, str], int] = {}
     parts: dict[str, int] = {}
     cases = {}
@@ -133,7 +130,7 @@ def data(material: Material) -> dict[str, Any]:
         rows = [
             [
                 quantities.setdefault(item.claim.quantity, len(quantities)),
-                lines_.setdefault(item.claim.line, len(lines_)),
+                lines.setdefault(item.claim.line, len(lines)),
                 pairs.setdefault(item.claim.between, len(pairs)),
                 _short(item.difference),
                 _short(item.uncertainty),
@@ -141,7 +138,7 @@ def data(material: Material) -> dict[str, Any]:
                 list(OUTCOMES).index(item.verdict.outcome),
                 parts.setdefault(dominating_parameter(result, item.claim, item.verdict), len(parts)),
             ]
-            for item in ordered([Item(claim, verdict) for claim, verdict in result.verdicts])
+            for item in ordered(items_of(result))
         ]
         scales = [float(scale(result, name)) for name in ("a_h", "p_h", "delta_h")]
         scales += [float(divisor(result, name, 1.0)) for name in ("sigma_xx", "u_x")]
@@ -154,7 +151,7 @@ def data(material: Material) -> dict[str, Any]:
             for name in sources
         },
         "quantities": [[name, typeset(symbol_of(name))] for name in quantities],
-        "lines": list(lines_),
+        "lines": list(lines),
         "pairs": [[*pair, pair_style(pair).colour] for pair in pairs],
         "parts": list(parts),
         "agrees": list(OUTCOMES).index(Outcome.AGREES),

@@ -14,12 +14,12 @@ from verification.page.number_text import plain
 from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row, written
 from verification.page.source_labels import source_label
 from verification.page.svg_plot import HUGE, Axes, drawing, round_ticks
-from verification.problem.line_profile import Profile
+from verification.problem.array_types import Array
+from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.report.figures.line_panels import FIRST, swatch
 from verification.report.report_material import Material
 from verification.report.tables.case_lookup import (
-    coordinate,
     layers,
     reference_source,
     scalar,
@@ -36,6 +36,7 @@ DASHED = ((), (6.0, 2.0), (3.0, 2.0), (1.0, 1.6), (6.0, 2.0, 1.0, 2.0))
 SMALLEST = 3  # fewer than this many moduli are no family
 
 Members = dict[float, CaseResult]  # by E1/E2, ascending
+Curves = dict[float, tuple[Array, Array]]  # by E1/E2
 
 
 def section(material: Material) -> Section | None:
@@ -80,30 +81,23 @@ def _families(results: Sequence[CaseResult]) -> dict[tuple[float, float, float],
 
 
 def _gallery(members: Members) -> Gallery:
-    curves = {
-        (quantity, line): {
-            ratio: (profile, result)
-            for ratio, result in members.items()
-            if (profile := result.profile_of.get((quantity, line, reference_source(result) or "")))
-            is not None
-        }
-        for quantity, line in FIRST
-    }
     styles = {ratio: Style("ink", DASHED[n % len(DASHED)], 1.3) for n, ratio in enumerate(members)}
-    panels = [
-        Panel(f"{QUANTITIES[quantity].symbol} / p_h", _draw(of, styles, line), f"on {line}", "")
-        for (quantity, line), of in curves.items()
-        if of
-    ]
+    panels, columns = [], []
+    for quantity, line in FIRST:
+        curves: Curves = {}
+        for ratio, result in members.items():
+            profile = result.profile_of.get((quantity, line, reference_source(result) or ""))
+            if profile is not None:
+                x, y = profile.position / scale(result, "a_h"), profile.value / scale(result, "p_h")
+                curves[ratio] = x, y
+                what = f"E1/E2 = {plain(ratio, 3)}, {line}"
+                columns.append([f"{coordinate_of(line)} / a_h, {what}", *(f"{v:.6g}" for v in x)])
+                columns.append([f"{quantity} / p_h, {what}", *(f"{v:.6g}" for v in y)])
+        if curves:
+            figure = _draw(curves, styles, quantity, line)
+            panels.append(Panel(f"{QUANTITIES[quantity].symbol} / p_h", figure, f"on {line}"))
     legend = [(swatch(style), f"E1/E2 = {plain(ratio, 3)}") for ratio, style in styles.items()]
     caption = "The best reference of each case; the methods coincide with it, see the pages of the cases."
-    columns = []
-    for (quantity, line), of in curves.items():
-        for ratio, (profile, result) in of.items():
-            what = f"E1/E2 = {plain(ratio, 3)}, {line}"
-            x, y = profile.position / scale(result, "a_h"), profile.value / scale(result, "p_h")
-            columns.append([f"{coordinate(line)} / a_h, {what}", *(f"{v:.6g}" for v in x)])
-            columns.append([f"{quantity} / p_h, {what}", *(f"{v:.6g}" for v in y)])
     return Gallery(legend, panels, caption, written(list(zip_longest(*columns, fillvalue=""))))
 
 
@@ -127,25 +121,18 @@ def _numbers(members: Members) -> Table:
     )
 
 
-def _draw(curves: dict[float, tuple[Profile, CaseResult]], styles: dict[float, Style], line: str) -> Markup:
-    """The reference curve of every member."""
-    scaled = {
-        ratio: (profile.position / scale(result, "a_h"), profile.value / scale(result, "p_h"))
-        for ratio, (profile, result) in curves.items()
-    }
-    (left, right), (low, high) = (
-        _ends(np.concatenate([pair[i][np.abs(pair[i]) < HUGE] for pair in scaled.values()])) for i in (0, 1)
-    )
+def _draw(curves: Curves, styles: dict[float, Style], quantity: str, line: str) -> Markup:
+    (left, right), (low, high) = (_ends([pair[i] for pair in curves.values()]) for i in (0, 1))
     margin = 0.09 * (high - low)
     axes = Axes(BOX, (left, right), (low - margin, high + margin))
-    axes.ticks(round_ticks(left, right, 6), round_ticks(low, high, 6), f"{coordinate(line)} / a_h")
-    for ratio, (x, y) in scaled.items():
+    axes.ticks(round_ticks(left, right, 6), round_ticks(low, high, 6), f"{coordinate_of(line)} / a_h")
+    for ratio, (x, y) in curves.items():
         axes.line(x, y, styles[ratio])
-    return drawing(
-        WIDTH, HEIGHT, f"{next(iter(curves.values()))[0].quantity} on {line} for every E1/E2", axes
-    )
+    return drawing(WIDTH, HEIGHT, f"{quantity} on {line} for every E1/E2", axes)
 
 
-def _ends(values: np.ndarray) -> tuple[float, float]:
-    """The least and the largest of ``values``; -1 and 1 where they do not differ."""
+def _ends(arrays: Sequence[Array]) -> tuple[float, float]:
+    """The least and the largest value that can be drawn; -1 and 1 where they do not differ."""
+    values = np.concatenate(arrays)
+    values = values[np.abs(values) < HUGE]
     return (float(values.min()), float(values.max())) if values.size and np.ptp(values) > 0 else (-1.0, 1.0)

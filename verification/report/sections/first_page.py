@@ -1,13 +1,11 @@
 """First page of a report: problem, sources, outcome, its credibility, limits of the claim."""
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import isfinite
 from statistics import median
 from typing import Any
-
-from markupsafe import Markup
 
 from verification.credibility.faults.first_notice import kinds, method_score, of_method
 from verification.judging.verdict import Claim, Outcome
@@ -19,7 +17,7 @@ from verification.problem.quantity import QUANTITIES
 from verification.regression.baseline_change import State, baseline_message
 from verification.regression.manifest import manifest_message
 from verification.report.figures.field_pictures import plane_difference
-from verification.report.figures.verdict_strips import Axis, Item, axis_of, draw_axis, draw_strip, worst
+from verification.report.figures.verdict_strips import Axis, axis_of, draw_axis, draw_strip, items_of, worst
 from verification.report.report_material import Material, made_with
 from verification.report.sections.accuracy_section import accuracies
 from verification.report.tables.case_lookup import divisor, layers
@@ -33,18 +31,6 @@ MOST_ROWS = 20  # strips of the first page; of more cases the worst have their o
 OWN_ROWS = 6  # with them the page of the shipped cases has less than 600 words
 # What a difference is divided by, in words, by the kind of its quantity.
 _SCALES = {"scalar": "of its value", "slope": "of its value", "displacement": "of the approach"}
-
-
-@dataclass(frozen=True)
-class StripRow:
-    """One row of the chart: cases of one strip, the comparison that a reader looks at first, the verdict."""
-
-    title: str
-    href: str
-    strip: Markup
-    first: str
-    count: str
-    style: OutcomeStyle
 
 
 @dataclass(frozen=True)
@@ -62,16 +48,23 @@ class Worth:
     older: bool = False
 
 
-@dataclass(frozen=True)
-class Chart:
-    """The strips of all cases over one axis; ``only`` names the outcome where all strips have the same."""
+def contents(material: Material) -> dict[str, Any]:
+    """What the template of the first page shows."""
+    return {
+        "asked": _asked(material),
+        "headline": _headline(material),
+        "largest": _largest(material),
+        "tallies": _tallies(material),
+        "alarms": _alarms(material),
+        "answered": _answered(material),
+        "chart": chart(material),
+        "worth": worth(material),
+        "left_out": _left_out(material),
+        "shaped": any(result.problem.get("indenter") for result in material.contacts),
+    }
 
-    rows: Sequence[StripRow]
-    scale: Markup
-    grouped: int
 
-
-def answered(material: Material) -> list[tuple[str, str]]:
+def _answered(material: Material) -> list[tuple[str, str]]:
     """(key of a text in the template, labels) of the sources of the run, in the order of the registry."""
     found = {name for result in material.results for claim, _ in result.verdicts for name in claim.between}
     texts: dict[str, list[str]] = {}
@@ -80,67 +73,62 @@ def answered(material: Material) -> list[tuple[str, str]]:
     return [(key, ", ".join(labels)) for key, labels in texts.items()]
 
 
-def headline(material: Material) -> str:
-    """The outcome of the run."""
+def _headline(material: Material) -> str:
     results = material.results
     if not results:
         return "No case was run."
     total = sum(len(result.verdicts) for result in results)
     agreeing = sum(v.outcome is Outcome.AGREES for result in results for _, v in result.verdicts)
     bad = sum(result.outcome is not Outcome.AGREES for result in results)
-    cases = _counted(len(results), "case")
+    cases = _counted(results, "case")
     if not bad:
         return f"All {total} comparisons of {cases} agree within their numerical uncertainty"
     return f"{bad} of {cases} do not agree: {total - agreeing} of {total} comparisons"
 
 
-def asked(material: Material) -> str:
+def _asked(material: Material) -> str:
     """What was compared, in one sentence."""
-    results = material.results
-    contacts = sum(not result.published for result in results)
-    published = len(results) - contacts
+    contacts, published = material.contacts, material.published
     texts = [f"{_counted(contacts, 'contact')} with a coated solid"] if contacts else []
     texts += [_counted(published, "published source")] if published else []
     return f"{' and '.join(texts)}, solved by independent methods." if texts else ""
 
 
-def _counted(count: int, noun: str) -> str:
-    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"
+def _counted(results: Sequence[CaseResult], noun: str) -> str:
+    return f"{len(results)} {noun}{'' if len(results) == 1 else 's'}"
 
 
-def largest(material: Material) -> list[str]:
+def _largest(material: Material) -> list[str]:
     """The largest difference, that next to edges that are not round, and that in planes, unjudged."""
     found = [
-        (Item(claim, verdict), result)
+        (item.difference, item.claim, result)
         for result in material.results
-        for claim, verdict in result.verdicts
-        if Item(claim, verdict).difference is not None
+        for item in items_of(result)
+        if item.difference is not None
     ]
-    found.sort(key=lambda pair: pair[0].difference or 0.0)
+    found.sort(key=lambda one: one[0])
     texts = []
-    if away := [pair for pair in found if pair[0].claim.line != EDGE_LINE]:
-        item, result = away[-1]
+    if away := [one for one in found if one[1].line != EDGE_LINE]:
+        difference, claim, result = away[-1]
         texts.append(
-            f"The largest difference is {scientific(item.difference)} {_scale(item.claim)}: "
-            f"{_place(item.claim)}, {result.title}."
+            f"The largest difference is {scientific(difference)} {_scale(claim)}: "
+            f"{_place(claim)}, {result.title}."
         )
-    if edge := [item for item, _ in found if item.claim.line == EDGE_LINE]:
-        worst = f"{scientific(edge[-1].difference)}, cap {edge[-1].claim.cap:g}"
+    if edge := [one for one in found if one[1].line == EDGE_LINE]:
+        worst = f"{scientific(edge[-1][0])}, cap {edge[-1][1].cap:g}"
         texts.append(f"Beside edges not round, in {len(edge)} comparisons: {worst}.")
     gaps = [
-        gap[0]
+        plane_difference(material.planes[result.name], float(divisor(result, "sigma_xx", 0.0)))
         for result in material.contacts
-        if (plane := material.planes.get(result.name)) is not None
-        and (gap := plane_difference(plane, float(divisor(result, "sigma_xx", 0.0)))) is not None
+        if result.name in material.planes
     ]
-    if gaps:
-        texts.append(f"In the pictures of sigma_xx, which are not judged: {scientific(max(gaps))}.")
+    if known := [gap for gap in gaps if gap is not None]:
+        texts.append(f"In the pictures of sigma_xx, which are not judged: {scientific(max(known))}.")
     return texts
 
 
-def left_out(material: Material) -> tuple[float, int]:
-    """The widest zone at the contact edge that is not judged [% of a], and the number of comparisons with
-    one."""
+def _left_out(material: Material) -> tuple[float, int]:
+    """The widest zone at the edge that is not judged [% of a], the number of comparisons with one."""
     zones = [
         CLEAR
         if result.problem.get("indenter") and claim.line.startswith(("off plane", "oblique", "interface"))
@@ -160,30 +148,31 @@ def _scale(claim: Claim) -> str:
     )
 
 
-def chart(material: Material) -> Chart | None:
-    """All comparisons of the run; None where there are none."""
-    results, anchors = material.results, material.anchors
-    items = {result: [Item(claim, verdict) for claim, verdict in result.verdicts] for result in results}
-    axis = axis_of([item for some in items.values() for item in some])
-    if not any(items.values()):
+def chart(material: Material) -> dict[str, Any] | None:
+    """All comparisons of the run, a row for each strip over one axis; None where there are none."""
+    results, anchors = list(material.results), material.anchors
+    items = [item for result in results for item in items_of(result)]
+    if not items:
         return None
-    order = list(results)
+    axis = axis_of(items)
+    own, others = results, []
     if len(results) > MOST_ROWS:
-        order = sorted(results, key=lambda result: _badness(result, items[result]))
-    own = order[: MOST_ROWS if len(results) <= MOST_ROWS else OWN_ROWS]
-    rows = [_strip_row(r.title, f"#{anchors[r]}", items[r], axis, [r], anchors[r]) for r in own]
+        results.sort(key=_badness)
+        own, others = results[:OWN_ROWS], results[OWN_ROWS:]
+    rows = [_strip_row(result.title, anchors[result], axis, [result]) for result in own]
     groups: dict[str, list[CaseResult]] = {}
-    for result in order[len(own) :]:
+    for result in others:
         groups.setdefault(_kind(result), []).append(result)
-    for kind, members in groups.items():
-        every = [item for result in members for item in items[result]]
-        rows.append(_strip_row(f"{len(members)} more: {kind}", "#cases", every, axis, members, ""))
-    return Chart(rows, draw_axis(axis), len(results) - len(own))
+    rows += [_strip_row(f"{len(some)} more: {kind}", "", axis, some) for kind, some in groups.items()]
+    return {"rows": rows, "scale": draw_axis(axis), "grouped": len(others)}
 
 
-def _strip_row(
-    title: str, href: str, items: Sequence[Item], axis: Axis, members: Sequence[CaseResult], anchor: str
-) -> StripRow:
+def _strip_row(title: str, anchor: str, axis: Axis, members: Sequence[CaseResult]) -> dict[str, Any]:
+    """Cases of one strip, the comparison that a reader looks at first, the verdict.
+
+    anchor : of a case on its own.
+    """
+    items = [item for result in members for item in items_of(result)]
     first = worst(items)
     agreeing = sum(item.verdict.outcome is Outcome.AGREES for item in items)
     outcome = min((result.outcome for result in members), key=lambda o: OUTCOMES[o].rank)
@@ -193,7 +182,14 @@ def _strip_row(
         text = f"{shown} {_place(first.claim)}"
         label += f"; look first at {text}"
     count = str(len(items)) if agreeing == len(items) else f"{agreeing} of {len(items)}"
-    return StripRow(title, href, draw_strip(items, axis, label, anchor), text, count, OUTCOMES[outcome])
+    return {
+        "title": title,
+        "href": f"#{anchor or 'cases'}",
+        "strip": draw_strip(items, axis, label, anchor),
+        "first": text,
+        "count": count,
+        "style": OUTCOMES[outcome],
+    }
 
 
 def _place(claim: Claim) -> str:
@@ -202,8 +198,9 @@ def _place(claim: Claim) -> str:
     return symbol_of(claim.quantity) + ("" if claim.line == "contact" else f", {line}")
 
 
-def _badness(result: CaseResult, items: Sequence[Item]) -> tuple[int, float]:
-    return OUTCOMES[result.outcome].rank, -max((item.difference or 0.0 for item in items), default=0.0)
+def _badness(result: CaseResult) -> tuple[int, float]:
+    largest = max((item.difference or 0.0 for item in items_of(result)), default=0.0)
+    return OUTCOMES[result.outcome].rank, -largest
 
 
 def _kind(result: CaseResult) -> str:
@@ -217,10 +214,9 @@ def _kind(result: CaseResult) -> str:
     return ", ".join(parts)
 
 
-def tallies(material: Material) -> list[tuple[OutcomeStyle, int]]:
+def _tallies(material: Material) -> list[tuple[OutcomeStyle, int]]:
     """How many comparisons have each verdict, the agreeing ones first."""
-    results = material.results
-    counted = Counter(verdict.outcome for result in results for _, verdict in result.verdicts)
+    counted = Counter(verdict.outcome for result in material.results for _, verdict in result.verdicts)
     return [(OUTCOMES[o], counted[o]) for o in reversed(OUTCOMES) if counted[o] or o is Outcome.AGREES]
 
 
@@ -295,7 +291,7 @@ def _share(held: Sequence[bool]) -> str:
     return f"all {len(held)}" if all(held) else f"{sum(held)} of {len(held)}"
 
 
-def alarms(material: Material) -> list[str]:
+def _alarms(material: Material) -> list[str]:
     """What fails although every verdict may agree: self-tests, the manifest, the baseline."""
     failed = [test.name for test in material.evidence.self_tests if not test.passed]
     messages = [f"self-tests of the harness: {', '.join(failed)}"] if failed else []
@@ -305,18 +301,3 @@ def alarms(material: Material) -> list[str]:
     if found is not None and found.unexplained:
         messages.append(f"numbers differ from the baseline: {baseline_message(found)}")
     return messages
-
-
-# By the name that the template knows a block of the page by.
-FIRST_PAGE: Mapping[str, Callable[[Material], Any]] = {
-    "asked": asked,
-    "headline": headline,
-    "largest": largest,
-    "tallies": tallies,
-    "alarms": alarms,
-    "answered": answered,
-    "chart": chart,
-    "worth": worth,
-    "left_out": left_out,
-    "shaped": lambda material: any(result.problem.get("indenter") for result in material.contacts),
-}

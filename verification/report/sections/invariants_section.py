@@ -52,14 +52,15 @@ def section(material: Material) -> Section | None:
     if not rows:
         return None
     sources = list(dict.fromkeys(one.source for _, one in rows))
-    names = list(dict.fromkeys(_family(one) for _, one in rows))
-    lines = []
-    for name in names:
-        cells = []
-        for source in sources:
-            found = [(n, one) for n, one in rows if (_family(one), one.source) == (name, source)]
-            cells += _family_cells(found, anchors)
-        lines.append(row(name, *cells))
+    families: dict[str, dict[str, list[tuple[CaseResult, Invariant]]]] = {}
+    for result, one in rows:
+        # the name of the invariant without the number of the layer or interface
+        family = families.setdefault(_NUMBERED.sub("", one.name), {})
+        family.setdefault(one.source, []).append((result, one))
+    lines = [
+        row(name, *(cell for source in sources for cell in _family_cells(family.get(source, []), anchors)))
+        for name, family in families.items()
+    ]
     held = sum(one.outcome is Outcome.AGREES for _, one in rows)
     tightest = max((one for _, one in rows), key=lambda one: one.share or 0.0)
     text = (
@@ -92,11 +93,6 @@ def _family_cells(
         number(largest),
         number(worst.share, _percent),
     ]
-
-
-def _family(one: Invariant) -> str:
-    """The name of the invariant without the number of the layer or interface."""
-    return _NUMBERED.sub("", one.name)
 
 
 def _badness(one: Invariant) -> tuple[int, float]:

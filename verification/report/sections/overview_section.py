@@ -2,16 +2,7 @@
 
 from verification.judging.verdict import Outcome
 from verification.page.number_text import seconds
-from verification.page.page_parts import (
-    Cell,
-    Part,
-    Section,
-    Table,
-    number,
-    outcome_cell,
-    row,
-    tally,
-)
+from verification.page.page_parts import Cell, Part, Section, Table, number, outcome_cell, row, tally
 from verification.page.source_labels import source_label, symbol_of
 from verification.regression.baseline_section import state_cell
 from verification.report.report_material import Material

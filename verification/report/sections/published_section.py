@@ -19,21 +19,14 @@ from verification.running.published_counts import counts
 from verification.sources.source_registry import METHODS, PUBLISHED, REFERENCES
 
 
-def _sources(result: CaseResult) -> tuple[str, ...]:
-    """Both methods, and the references that were compared."""
-    claimed = {source for claim, _ in result.verdicts for source in claim.between}
-    return METHODS + tuple(source for source in REFERENCES if source in claimed)
-
-
 def section(material: Material) -> Section | None:
     """Every source at a glance, with the departures of the sources."""
     if not material.published:
         return None
-    parts = [
-        Part("", [_overview(material)]),
-        Part("Departures of the sources", [_departures(material)]),
-    ]
-    return Section("published", "Published results", [part for part in parts if any(part.tables)])
+    parts = [Part("", [_overview(material)])]
+    if departures := _departures(material):
+        parts.append(Part("Departures of the sources", [departures]))
+    return Section("published", "Published results", parts)
 
 
 def _overview(material: Material) -> Table:
@@ -97,6 +90,12 @@ def _departures(material: Material) -> Table:
     )
 
 
+def _sources(result: CaseResult) -> tuple[str, ...]:
+    """Both methods, and the references that were compared."""
+    claimed = {source for claim, _ in result.verdicts for source in claim.between}
+    return METHODS + tuple(source for source in REFERENCES if source in claimed)
+
+
 def _method_cells(result: CaseResult, method: str) -> list[Cell]:
     met = total = 0
     for item in result.published["columns"]:
@@ -127,12 +126,12 @@ def _listed(item: Mapping[str, Any]) -> np.ndarray:
 def tables(result: CaseResult) -> list[tuple[str, Table]]:
     """One table for each published column, its lines one below the other."""
     return [
-        (f"{column} of {file}", _table(result, column, quantity, items))
-        for (file, column, quantity), items in _columns(result).items()
+        (f"{column} of {file}", _table(result, items))
+        for (file, column, _), items in _columns(result).items()
     ]
 
 
-def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mapping[str, Any]]) -> Table:
+def _table(result: CaseResult, items: Sequence[Mapping[str, Any]]) -> Table:
     first, sources = items[0], _sources(result)
     rows = []
     for item in items:
@@ -174,14 +173,9 @@ def _table(result: CaseResult, column: str, quantity: str, items: Sequence[Mappi
             label = ", ".join(filter(None, (place, item["labels"][n])))
             head = Cell(label, note=f"{item['file']}, line {item['rows'][n]}")
             rows.append(row(head, *cells, verdict, css="" if counted else "inconclusive"))
-    unit = f" in {first['unit']}" if first["unit"] != "1" else ""
-    meaning = (QUANTITIES[quantity].meaning or QUANTITIES[quantity].symbol) + (
-        " here, of the other sign" if first["to_si"] < 0 else " here"
-    )
+    quantity = QUANTITIES[first["quantity"]]
     return Table(
-        f"{column}{unit}, {'recomputed' if first['seen'] == RECOMPUTED else 'as published'} ({meaning}): "
-        "the departure of the source, exact less published; the difference of each method from the "
-        "published value, and the sum of both uncertainties.",
+        stated("published_column", first=first, meaning=quantity.meaning or quantity.symbol),
         [
             "where",
             f"{first['coordinate']} in {first['position_unit']}",

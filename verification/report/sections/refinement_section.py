@@ -11,19 +11,14 @@ from verification.page.number_text import seconds
 from verification.page.page_parts import Cell, Gallery, Part, Section, Table, number, row, table_of
 from verification.page.source_labels import OUTCOMES, row_css
 from verification.page.svg_loglog import DASHES, DOTS, MIXED, UNKNOWN, Plot, Trail, panels
-from verification.problem.quantity import QUANTITIES as QUANTITY
-from verification.problem.quantity import SCALARS
 from verification.report.figures.line_panels import swatch
 from verification.report.report_material import Material
 from verification.report.report_words import stated
 from verification.sources.source_record import Style
 
-_SCALARS = [QUANTITY[name] for name in SCALARS]
-_TITLES = {q.symbol: q.symbol for q in _SCALARS} | {
-    "pressure": "pressure, L2 over the contact",
-    "stress": "stress, axis and interfaces",
-}
-_SCALES = {q.symbol: "relative" for q in _SCALARS} | {"pressure": "over p0", "stress": "largest, over p_h"}
+# Of quantities that are no scalars.
+_TITLES = {"pressure": "pressure, L2 over the contact", "stress": "stress, axis and interfaces"}
+_SCALES = {"pressure": "over p0", "stress": "largest, over p_h"}
 _SETTINGS = {
     (CORRECTED, True): Style("semi"),
     (CORRECTED, False): Style("semi", DOTS),
@@ -42,7 +37,7 @@ def semianalytic_section(material: Material) -> Section | None:
     if study is None:
         return None
     grids = [one for one in study.refinements if one.method == "semianalytic"]
-    parts = _judged_parts(study.verdicts)
+    parts = [_judged(study.verdicts)] if study.verdicts else []
     if any(one.levels for one in grids):
         text = stated("grids", problem=f"{PROBLEM[0].upper()}{PROBLEM[1:]}")
         caption = stated("grid_caption")
@@ -71,29 +66,17 @@ def finite_element_section(material: Material) -> Section | None:
     return Section("finite-element-accuracy", "Finite element accuracy", parts, failures)
 
 
-def _judged_parts(found: Sequence[Invariant]) -> list[Part]:
+def _judged(found: Sequence[Invariant]) -> Part:
     """Each part of the method beside its limit, which counts for the exit code of the run."""
-    if not found:
-        return []
+    rows = []
+    for one in sorted(found, key=lambda one: OUTCOMES[one.outcome].rank):
+        style = OUTCOMES[one.outcome]
+        verdict = Cell(style.mark, one.share, f"verdict {style.css}")
+        rows.append(row(one.name, Cell(one.message, css="reason"), verdict, css=row_css(one.outcome)))
+    caption = "The parts of the method beside their limits."
     held = sum(one.outcome is Outcome.AGREES for one in found)
     text = stated("judged_studies", held=held, total=len(found))
-    table = table_of(
-        "The parts of the method beside their limits.",
-        sorted(found, key=lambda one: OUTCOMES[one.outcome].rank),
-        [
-            ("part", lambda one: one.name),
-            ("error", lambda one: Cell(one.message, css="reason")),
-            (
-                "verdict",
-                lambda one: Cell(
-                    OUTCOMES[one.outcome].mark, one.share, f"verdict {OUTCOMES[one.outcome].css}"
-                ),
-            ),
-        ],
-        css="verdicts",
-        row_css=lambda one: row_css(one.outcome),
-    )
-    return [Part(text, [table])]
+    return Part(text, [Table(caption, ["part", "error", "verdict"], rows, css="verdicts")])
 
 
 def _conversion_table(found: Sequence[ConversionError]) -> Table:
@@ -127,17 +110,15 @@ def _refinement_gallery(
             "–" if order is None else f"−{order:.1f}",
         )
 
-    plots = [
-        Plot(
-            _TITLES[q],
-            f"error of {_TITLES[q]} over {coordinate}, logarithmic",
-            f"error, {_SCALES[q]}",
-            coordinate,
-            ticks,
-            [trail(one, q, style) for one, style in zip(studies, styles, strict=True) if one.levels],
+    plots = []
+    for q in QUANTITIES:
+        title = _TITLES.get(q, q)
+        label, note = (
+            f"error of {title} over {coordinate}, logarithmic",
+            f"error, {_SCALES.get(q, 'relative')}",
         )
-        for q in QUANTITIES
-    ]
+        trails = [trail(one, q, style) for one, style in zip(studies, styles, strict=True) if one.levels]
+        plots.append(Plot(title, label, note, coordinate, ticks, trails))
     legend = [
         (swatch(style), f"{one.solid}: {one.setting}") for one, style in zip(studies, styles, strict=True)
     ]

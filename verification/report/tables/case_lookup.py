@@ -6,29 +6,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.judging.verdict import Claim
+from verification.judging.verdict import Claim, Comparison
 from verification.page.page_parts import Cell
 from verification.problem.coated_contact import BALL, FLAT
-from verification.problem.line_profile import ON_BALL, Profile, coordinate_of
+from verification.problem.line_profile import Profile, coordinate_of
 from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import CaseResult
 from verification.sources.source_registry import METHODS, REFERENCES
 
 # By their shape in a problem.
 INDENTERS = {"ellipsoid": "ellipsoid", "asperities": "pair of asperities", "lobes": "lobed sphere"}
-GROUPS = ("contact", "surface", "axis", "interfaces", "off plane")
-_GROUP_OF = {"contact": GROUPS[0], "oblique": GROUPS[4], "oblique surface": GROUPS[4]}
-
-
-def group_of(line: str) -> str:
-    """The column of the verdict matrix that a line belongs to."""
-    line = line.removeprefix(ON_BALL)
-    return GROUPS[3] if line.startswith("interface") else _GROUP_OF.get(line, line)
-
-
-def lines(result: CaseResult) -> tuple[str, ...]:
-    """The lines with profiles, in the order in which they were sampled; without the scalars."""
-    return tuple(dict.fromkeys(p.line for p in result.profiles if p.line != "contact"))
 
 
 def sources_with_profiles(result: CaseResult) -> tuple[str, ...]:
@@ -43,10 +30,8 @@ def reference_source(result: CaseResult) -> str | None:
     found = sources_with_profiles(result)
     exact = [source for source in found if source in REFERENCES]
     references = [source for source in found if source not in METHODS]
-    for choice in (exact, references, [s for s in found if s in METHODS[1:]]):
-        if choice:
-            return choice[-1]
-    return None
+    elements = [source for source in found if source in METHODS[1:]]
+    return next((choice[-1] for choice in (exact, references, elements) if choice), None)
 
 
 def scale(result: CaseResult, name: str) -> np.float64:
@@ -94,15 +79,10 @@ def contact_radius(result: CaseResult) -> float | None:
     return None
 
 
-def coordinate(line: str) -> str:
-    """The coordinate that runs along ``line``."""
-    return coordinate_of(line)
-
-
 def judged(result: CaseResult, claim: Claim, position: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Marks the points of ``position`` judged by ``claim``: those outside its zone around the edge."""
     a = contact_radius(result)
-    if not claim.edge or a is None or coordinate(claim.line) == "z":
+    if not claim.edge or a is None or coordinate_of(claim.line) == "z":
         return np.ones(position.shape, dtype=bool)
     return np.abs(np.abs(position) - a) >= claim.edge * a
 
@@ -117,10 +97,8 @@ def difference(
     if first is None or second is None or not np.array_equal(first.position, second.position):
         return None
     reach = divisor(result, first.quantity, second.value[0])
-    gap = np.abs(first.value - second.value) / reach
-    if first.uncertainty is None or second.uncertainty is None:
-        return gap, None
-    return gap, (first.uncertainty + second.uncertainty) / reach
+    comparison = Comparison(first, second, float(reach), np.ones(first.position.shape, dtype=bool))
+    return np.abs(comparison.difference), comparison.uncertainty
 
 
 def divisor(result: CaseResult, quantity: str, value: Any) -> np.float64:

@@ -13,11 +13,14 @@ from verification.page.page_parts import Cell, Table, number, outcome_cell, row,
 from verification.page.source_labels import OUTCOMES, pair_label, row_css, source_label, symbol_of
 from verification.problem.coated_contact import BALL, FLAT
 from verification.problem.indenter_shape import SHAPES
+from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import BALL_PEAKS, PEAKS, QUANTITIES, SCALARS, SLOPES, unit_of
 from verification.report.report_words import stated
-from verification.report.tables.case_lookup import INDENTERS, coordinate, layers, scalar, scale
+from verification.report.tables.case_lookup import INDENTERS, layers, scalar, scale
 from verification.running.case_result import CaseResult
 
+# A failed source fails every comparison; the list before the figures stays short.
+MOST_FAILING = 6
 NO_RESULT = Cell("no result", css="no-result")
 _FACTS = {
     "pressure": ("uniform pressure q", "Pa"),
@@ -36,9 +39,8 @@ _FACTS = {
 def facts(result: CaseResult) -> list[tuple[str, str]]:
     """(name, value) of each parameter and each Hertz scale of a problem."""
     given = {"friction": 0.0} | result.problem
-    indenter = given.get("indenter")
     texts, found = _FACTS, []
-    if indenter:
+    if indenter := given.get("indenter"):
         # all numbers but that of the lobes are lengths
         shape, numbers = indenter
         shown = [
@@ -141,19 +143,20 @@ def comparison_table(result: CaseResult) -> Table:
     )
 
 
-def failing_table(result: CaseResult, a_h: float, most: int) -> Table:
-    """The comparisons that do not agree, the worst first; ``most`` of them."""
+def failing_table(result: CaseResult) -> Table:
+    """The comparisons that do not agree, the worst first; ``MOST_FAILING`` of them."""
+    a_h = scale(result, "a_h")
     bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
-    more = f" The worst {most} of {len(bad)}." if len(bad) > most else ""
+    more = f" The worst {MOST_FAILING} of {len(bad)}." if len(bad) > MOST_FAILING else ""
 
     def where(claim: Claim, verdict: Verdict) -> Cell:
         known = verdict.worst is not None and claim.line != "contact" and a_h
-        text = f"{coordinate(claim.line)} = {plain((verdict.worst or 0.0) / a_h, 3)} a_h" if known else ""
+        text = f"{coordinate_of(claim.line)} = {plain((verdict.worst or 0.0) / a_h, 3)} a_h" if known else ""
         return Cell(text, verdict.worst)
 
     return table_of(
         f"Comparisons that do not agree.{more}",
-        sorted(bad, key=lambda item: _badness(item[1]))[:most],
+        sorted(bad, key=lambda item: _badness(item[1]))[:MOST_FAILING],
         [
             ("verdict", lambda item: outcome_cell(item[1].outcome)),
             ("quantity", lambda item: Cell(symbol_of(item[0].quantity), note=item[0].why)),
@@ -204,7 +207,7 @@ def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> 
     return f"{source_label(source)}: {max(parts, key=lambda item: item[1])[0]}"
 
 
-def budget_table(result: CaseResult) -> Table | None:
+def budget_table(result: CaseResult) -> Table:
     """Uncertainty budget: a row for each numerical parameter of each method."""
     rows = []
     for source in result.sources:
@@ -212,13 +215,15 @@ def budget_table(result: CaseResult) -> Table | None:
             parts = [U for q, _, U in source.budget if q == quantity]
             largest = max(filter(isfinite, parts), default=0.0)
             dominant = "dominant" if value == largest > 0 and len(parts) > 1 else ""
+            found = scalar(result, quantity, source.source)
+            size = abs(found[0]) if found else scale(result, "p_h")
             rows.append(
                 row(
                     source_label(source.source),
                     quantity,
                     Cell(name, css=dominant),
                     Cell(engineering(value, unit_of(quantity), 2), value),
-                    Cell(scientific(_relative(result, source.source, quantity, value)), value),
+                    Cell(scientific(value / size if size else None), value),
                     Cell("◀ dominates" if dominant else "", css="dominant"),
                 )
             )
@@ -230,13 +235,7 @@ def budget_table(result: CaseResult) -> Table | None:
     )
 
 
-def _relative(result: CaseResult, source: str, quantity: str, value: float) -> float | None:
-    found = scalar(result, quantity, source)
-    size = abs(found[0]) if found else scale(result, "p_h")
-    return value / size if size else None
-
-
-def diagnostics_table(result: CaseResult) -> Table | None:
+def diagnostics_table(result: CaseResult) -> Table:
     """Diagnostics of each source: iterations, residuals, unknowns."""
     rows = [
         row(source_label(source.source), name.replace("_", " "), _shown(value))
@@ -252,7 +251,7 @@ def _shown(value: Any) -> str:
     if isinstance(value, list | tuple):
         if len(value) > 6:
             return f"{len(value)} values, first {_shown(value[0])}, last {_shown(value[-1])}"
-        return ", ".join(_shown(item) for item in value)
+        return ", ".join(map(_shown, value))
     if isinstance(value, dict):
         return ", ".join(f"{key} {_shown(item)}" for key, item in value.items())
     text = str(value)

@@ -5,9 +5,8 @@ from itertools import zip_longest
 import numpy as np
 
 from verification.page.page_parts import written
-from verification.problem.line_profile import Profile
+from verification.problem.line_profile import Profile, coordinate_of
 from verification.problem.quantity import unit_of
-from verification.report.tables.case_lookup import coordinate
 from verification.running.case_result import CaseResult
 
 MOST_DIGITS = 10
@@ -30,7 +29,7 @@ def line_csv(result: CaseResult, line: str) -> str:
     columns: list[list[str]] = []
     for group in groups:
         if line != "contact":
-            columns.append([f"{coordinate(line)} [m]", *(f"{x:.9g}" for x in group[0].position.tolist())])
+            columns.append([f"{coordinate_of(line)} [m]", *(f"{x:.9g}" for x in group[0].position.tolist())])
         for profile in group:
             head = f"{profile.quantity} [{unit_of(profile.quantity)}] {profile.source}"
             columns.append([_safe(head), *_cut(profile)])
