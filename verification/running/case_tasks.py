@@ -20,7 +20,7 @@ from verification.running.contact_run import failed, judge_case, solve_case
 from verification.running.json_records import plain
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import fingerprint
-from verification.running.stored_fields import plane_path, read_fields, read_plane, write_fields, write_plane
+from verification.running.stored_fields import confirm_fields, plane_path, read_plane, write_fields, write_plane
 from verification.sampling.stress_plane import plane_invariants, sample_plane
 from verification.sources.method_sources import sharing_pressure
 from verification.sources.source_record import Solver
@@ -117,5 +117,5 @@ def kept_result(folder: Path, case: Case | PublishedCase, *, fields: bool = Fals
     if isinstance(case, Case):
         read_plane(plane_path(folder, case.name), case.text)
         if fields:
-            read_fields(folder, case.name, case.text)
+            confirm_fields(folder, case.name, case.text)
     return result if result.outcome is not Outcome.NO_RESULT else None
