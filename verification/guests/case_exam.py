@@ -29,7 +29,6 @@ from verification.problem.line_profile import Profile
 from verification.problem.quantity import unit_of
 from verification.running.case_result import CaseResult, SourceResult, describe, from_json, to_json
 from verification.running.checked_files import StoreError, read_checked, write_checked
-from verification.running.contact_run import failed
 from verification.running.json_records import plain
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import fingerprint
@@ -60,12 +59,12 @@ def exam_task(case: Subject, folder: Path) -> Task[Exam]:
     """Solving ``case`` exactly; its profiles at the points required of every guest."""
     path = exam_path(folder, case)
     cost = 1.0 + len(case.problem.coatings)
-    work, failed = partial(prepare, case, path), partial(_failed, case)
-    return Task(case.name, work, path, lambda data: Exam(from_json(data)), failed, cost=cost)
+    work = partial(prepare, case, path)
+    return Task(case.name, work, path, lambda data: Exam(from_json(data)), partial(_failed, case), cost=cost)
 
 
 def _failed(case: Subject, reason: str, seconds: float) -> Exam:
-    return Exam(failed(case, reason, seconds))
+    return Exam(CaseResult.failed(case, reason, seconds))
 
 
 def kept_exam(folder: Path, case: Subject) -> CaseResult | None:
