@@ -27,7 +27,7 @@ from verification.commands.common.terminal import (
     print_json,
     print_out,
 )
-from verification.guests.exam_subjects import reference_of, subject_of
+from verification.guests.exam_subjects import exact_profile, subject_of
 from verification.guests.examination import Examined, examined, outcome_counts, packed_cases
 from verification.guests.guest_description import FILE, Guest, parse_guest, read_guest
 from verification.guests.pages.guest_page import badge, summary
@@ -207,7 +207,7 @@ def _show(guest: Guest, result: CaseResult) -> None:
     table = named_table("quantity", "line", "at", "guest", "exact", "difference", "verdict")
     for claim, verdict in result.verdicts:
         mine = result.profile_of.get((claim.quantity, claim.line, guest.name))
-        exact = result.profile_of.get((claim.quantity, claim.line, reference_of(result.problem)))
+        exact = exact_profile(result, claim.quantity, claim.line)
         if verdict.outcome is Outcome.UNSUPPORTED or mine is None or exact is None:
             continue
         if (claim.quantity, claim.line) in explained:

@@ -9,7 +9,7 @@ import numpy as np
 from markupsafe import Markup
 
 from verification.guests.case_exam import profiles_of
-from verification.guests.exam_subjects import reference_of
+from verification.guests.exam_subjects import exact_profile, exact_radius, reference_of
 from verification.guests.examination import Examined
 from verification.guests.slip_diagnosis import UNEXPLAINED, slips
 from verification.judging.verdict import Claim, Outcome, Verdict
@@ -278,9 +278,8 @@ def _failures(found: Examined) -> Section | None:
 
 def _ratio(guest: str, result: CaseResult, claim: Claim) -> str:
     """Least-squares factor between the guest and the exact values; 1 where only the pattern differs."""
-    mine, exact = (
-        result.profile_of.get((claim.quantity, claim.line, s)) for s in (guest, reference_of(result.problem))
-    )
+    mine = result.profile_of.get((claim.quantity, claim.line, guest))
+    exact = exact_profile(result, claim.quantity, claim.line)
     if mine is None or exact is None or not np.isfinite(mine.value).all() or not exact.value.any():
         return "–"
     return plain(float(mine.value @ exact.value / (exact.value @ exact.value)), 6)
@@ -290,7 +289,7 @@ def _figure(guest: str, result: CaseResult, claim: Claim, verdict: Verdict) -> P
     mine, exact = (
         result.profile_of[claim.quantity, claim.line, s] for s in (guest, reference_of(result.problem))
     )
-    a = float(result.profile_of["contact_radius", "contact", reference_of(result.problem)].value[0])
+    a = exact_radius(result)
     top = float(np.abs(exact.value).max()) or 1.0
     x = exact.position / a
     difference = np.abs(mine.value - exact.value) / top
@@ -347,9 +346,9 @@ def _convergence(found: Examined) -> Section | None:
 def _errors(found: Examined, result: CaseResult) -> dict[str, tuple[float, ...]]:
     """Largest error of each quantity at each level over its scale; of a line outside the zone left out."""
     guest, exact = found.guest, result.profile_of
-    if ("contact_radius", "contact", reference_of(result.problem)) not in exact:
+    if exact_profile(result, "contact_radius") is None:
         return {}
-    a = float(exact["contact_radius", "contact", reference_of(result.problem)].value[0])
+    a = exact_radius(result)
     levels = [profiles_of(reply.answer, result, guest) for reply in found.replies[result.name]]
     errors: dict[str, list[float]] = {}
     for profiles in levels:
