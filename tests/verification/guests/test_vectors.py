@@ -5,12 +5,10 @@ import hashlib
 import io
 import json
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 from open_digits_made.content import vector
-from open_digits_made.making import make
 from open_digits_made.problems import problems
 from open_digits_made.values import exact_rows
 from open_digits_made.vector_schema import VectorSet
@@ -54,9 +52,8 @@ def test_both_methods_agree_within_their_uncertainty(shipped):
     by = {one["method"]: one for one in shipped["checked"]}
     assert by["semianalytic"]["problems"] >= 200
     assert by["fem_reference"]["problems"] >= 30
-    for one in (
-        by.values()
-    ):  # an uncertainty from a refinement covers 999 of 1000 values; the README names the others
+    # an uncertainty from a refinement covers 999 of 1000 values; the README names the others
+    for one in by.values():
         assert one["within"] >= 0.999 * one["values"]
 
 
@@ -98,13 +95,3 @@ def test_the_reader_shown_is_at_most_20_lines_that_run(folder, monkeypatch, caps
     monkeypatch.chdir(folder)
     exec(compile(code, "README", "exec"), {})
     assert "osullivan_king_013" in capsys.readouterr().out
-
-
-def test_making_goes_on_where_it_was_stopped(tmp_path, monkeypatch):
-    few = problems()[:2]
-    monkeypatch.setattr("open_digits_made.making.problems", lambda: few)
-    first = make(tmp_path, {"semianalytic": 1})
-    stamp = {path: path.stat().st_mtime_ns for path in Path(tmp_path).rglob("*.json")}
-    assert make(tmp_path, {"semianalytic": 1}) == first
-    assert {path: path.stat().st_mtime_ns for path in Path(tmp_path).rglob("*.json")} == stamp
-    assert first["checked"][0]["problems"] == 1
