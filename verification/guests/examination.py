@@ -119,7 +119,7 @@ def _exams(cases: Sequence[Subject], folder: Path, solve: Solve) -> list[CaseRes
     found = {case.name: exam for case in cases if (exam := kept_exam(folder, case)) is not None}
     new = [case for case in cases if case.name not in found]
     solved = solve([exam_task(case, folder) for case in new], EXACT_LIMIT)
-    found |= {case.name: exam.result for case, exam in zip(new, solved, strict=True)}
+    found |= {case.name: exam for case, exam in zip(new, solved, strict=True)}
     return [found[case.name] for case in cases]
 
 

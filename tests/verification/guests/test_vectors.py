@@ -5,6 +5,7 @@ import hashlib
 import io
 import json
 import re
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -22,9 +23,8 @@ def shipped():
     return open_digits.shipped()
 
 
-def test_at_least_500_problems_with_50_000_values(shipped):
+def test_at_least_500_problems_of_all_kinds(shipped):
     assert len(shipped["problems"]) >= 500
-    assert open_digits.value_count(shipped) >= 50_000
     assert len({one["name"] for one in shipped["problems"]}) == len(shipped["problems"])
     assert {len(one["problem"]["coatings"]) for one in shipped["problems"]} == set(range(6))
     groups = {one["group"] for one in shipped["problems"]}
@@ -36,12 +36,19 @@ def test_the_schema_holds_and_every_value_has_its_uncertainty(shipped):
     assert json.loads(open_digits.SCHEMA.read_text()) == VectorSet.model_json_schema()
     assert "CC0" in shipped["licence"]
     assert "coatcheck" in shipped["cite"]
+    wide = []
     for one in shipped["problems"]:
+        wide += [U / abs(value) for value, U in one["contact"].values()]
+        scales = Counter()
         for points in one["points"]:
+            for q, values in points["values"].items():
+                scales[q] = max(scales[q], *map(abs, values))
+        for points in one["points"]:
+            wide += [U / (scales[q] or 1.0) for q, found in points["uncertainty"].items() for U in found]
             assert points["values"].keys() == points["uncertainty"].keys()
             sizes = {len(v) for part in ("values", "uncertainty") for v in points[part].values()}
             assert sizes == {len(points["x"])} == {len(points["z"])}
-    wide = np.array(list(open_digits.uncertain(shipped)))
+    wide = np.array(wide)
     assert np.isfinite(wide).all()
     assert (wide >= 0).all()
     assert (wide <= 1e-10).mean() > 0.8  # ten digits
@@ -85,7 +92,7 @@ def test_the_command_writes_files_whose_checksums_hold(folder, shipped):
     for name, digest in shipped["sha256"].items():
         assert hashlib.sha256((folder / name).read_bytes()).hexdigest() == digest
     rows = list(csv.DictReader(io.StringIO((folder / "values.csv").read_text())))
-    assert len(rows) == open_digits.value_count(shipped)
+    assert len(rows) >= 50_000
 
 
 def test_the_reader_shown_is_at_most_20_lines_that_run(folder, monkeypatch, capsys):
