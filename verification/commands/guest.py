@@ -7,7 +7,7 @@ import time
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from cyclopts import Parameter
@@ -40,7 +40,6 @@ from verification.regression.junit_xml import junit_xml
 from verification.regression.run_exit_codes import EXIT
 from verification.running.case_result import CaseResult, RunInfo, to_json
 from verification.running.checked_files import locked, write_atomically
-from verification.running.pool.pool_task import Task
 
 Folder = Annotated[Path | None, Parameter(name=["--output", "-o"])]
 UNCOATED, COATED = ("01_uncoated_steel", "13_uncoated_sliding"), ("05_ratio_4", "14_ratio_4_sliding")
@@ -135,12 +134,9 @@ def run(
     chosen = _chosen(cases or _packed(host))
     folder = output or host.folder / "report"
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
-
-    def run_tasks(tasks: Sequence[Task[Any]], limit: float) -> list[Any]:
-        return solve(tasks, jobs, limit, quiet or as_json)
-
+    silent = quiet or as_json
     with locked(folder):
-        found = examined(host, chosen, folder, run_tasks, jobs)
+        found = examined(host, chosen, folder, lambda tasks, limit: solve(tasks, jobs, limit, silent), jobs)
         info = run_info(shlex.join(["coatcheck", "guest", "run", guest, *cases]), started, jobs)
         page = folder / "report.html"
         texts = {
@@ -158,8 +154,8 @@ def run(
                 "guest": host.name,
                 "exit_code": code,
                 "cases": {r.name: dict(outcome_counts([r])) for r in found.results},
-                "known": list(found.known),
-                "unexpected": list(found.unexpected),
+                "known": found.known,
+                "unexpected": found.unexpected,
             }
         )
     elif not quiet:
@@ -223,8 +219,7 @@ def _show(guest: Guest, result: CaseResult) -> None:
         table.add_row(claim.quantity, line, at, *shown, gap, word)
     if table.rows:
         print_out(table)
-    failures = {s.failure for s in result.sources if s.failure}
-    for failure in sorted(failures):
+    for failure in sorted({s.failure for s in result.sources if s.failure}):
         print_out(f"[bold red]no result:[/] {escape(one_line(failure))}")
     missing = Counter(v.reason for _, v in result.verdicts if v.outcome is Outcome.UNSUPPORTED)
     for reason, count in missing.items():
