@@ -139,7 +139,9 @@ def _slips(
     places = {p.line: p.position for p in result.profiles}
     if any(q in ("contact_radius", "approach", "peak_pressure") for q, _ in wrong):
         yield from _inputs(result, exact, given, places)
-    mirrored = _moved(places, lambda x: -x, _signs("sigma_xz", "sigma_xy", "u_x", "tension_place"))
+    mirrored = _moved(
+        places, lambda x: -x, dict.fromkeys(("sigma_xz", "sigma_xy", "u_x", "tension_place"), -1.0)
+    )
     if result.problem["friction"]:
         yield CommonSlip(
             "sliding along -x",
@@ -233,10 +235,6 @@ def input_factors(nu: float) -> dict[str, dict[float, str]]:
         "R": {2.0: "the diameter in place of the radius", 0.5: "R/2 in place of R"},
         "W": {2.0: "twice the load", 0.5: "half of the load", 0.25: "the load of a quarter model"},
     }
-
-
-def _signs(*quantities: str) -> dict[str, float]:
-    return dict.fromkeys(quantities, -1.0)
 
 
 def _signed(*quantities: str) -> Callable[[Values], Values]:

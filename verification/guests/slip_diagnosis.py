@@ -228,16 +228,6 @@ def _candidates(mine: Profile, exact: Profile, result: CaseResult) -> Iterator[C
             cause = f": {' and '.join(sorted(axes))} transposed?" if len(axes) == 2 else ""
             yield f"equal to {other}{cause}", profile.value, None
             yield f"equal to -{other}{cause}", -profile.value, None
-    if "side" in line:
-        flipped = line.replace("upper", "~").replace("lower", "upper").replace("~", "lower")
-        profile = exact_profile(result, quantity, flipped)
-        if profile is not None and _norm(profile.value - e) > FINE * _norm(e):
-            yield f"equal to the value on the {flipped}: the other layer?", profile.value, None
-    if line != "axis" and x.min(initial=0.0) < 0:
-        mirrored, common = np.interp(-x, x, e), (-x >= x.min()) & (-x <= x.max())
-        if _norm(mirrored - e) > FINE * _norm(e):
-            yield "mirrored in x: leading and trailing side exchanged?", mirrored, common
-            yield "mirrored in x, of the opposite sign: is sliding along +x?", -mirrored, common
     for stretch, message in (
         (2.0, "as if every position were doubled: a for the diameter, or a radius for 2 r?"),
         (0.5, "as if every position were halved: the diameter 2 a in place of a?"),
