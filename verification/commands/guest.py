@@ -35,6 +35,7 @@ from verification.guests.pages.guest_page import page as render
 from verification.guests.slip_diagnosis import slips
 from verification.judging.outcome import Outcome
 from verification.page.number_text import engineering
+from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import unit_of
 from verification.regression.junit_xml import junit_xml
 from verification.regression.run_exit_codes import EXIT
@@ -211,7 +212,7 @@ def _show(guest: Guest, result: CaseResult) -> None:
         # The point that decides, or where the exact value is largest.
         worst = verdict.worst if verdict.worst is not None else exact.position[np.abs(exact.value).argmax()]
         i = int(np.abs(exact.position - worst).argmin())
-        at = "" if claim.line == "contact" else f"{'z' if claim.line == 'axis' else 'x'} = {worst:.3g} m"
+        at = "" if claim.line == "contact" else f"{coordinate_of(claim.line)} = {worst:.3g} m"
         shown = [engineering(p.value[i], unit_of(claim.quantity), 6) for p in (mine, exact)]
         gap = "-" if verdict.difference is None else f"{verdict.difference:.1e}"
         line = "" if claim.line == "contact" else claim.line

@@ -25,7 +25,7 @@ from verification.guests.common_slips import (
 from verification.guests.exam_subjects import exact_profile, exact_radius, reference_of
 from verification.judging.verdict import Outcome
 from verification.problem.array_types import Array
-from verification.problem.line_profile import Profile
+from verification.problem.line_profile import Profile, coordinate_of
 from verification.problem.quantity import STRESSES, unit_of
 from verification.running.case_result import CaseResult
 
@@ -204,11 +204,9 @@ def _of_line(mine: Profile, exact: Profile, result: CaseResult) -> str | None:
                 "edge in guest.toml leaves a zone out"
             )
     worst = int(np.argmax(np.abs(g - e)))
-    coordinate = "z" if mine.line == "axis" else "x"
-    where_worst = f"{coordinate} = {x[worst] / a:.3g} a"
     return (
         f"{UNEXPLAINED}: off by {np.abs(g - e)[worst] / size:.1e} of the largest value at "
-        f"{where_worst}, {error / _norm(e):.1e} on average"
+        f"{coordinate_of(mine.line)} = {x[worst] / a:.3g} a, {error / _norm(e):.1e} on average"
     )
 
 
