@@ -16,7 +16,7 @@ from verification.commands.common.shared_options import AsJson, BaselineFolder, 
 from verification.commands.common.terminal import named_table, print_json, print_out
 from verification.credibility.self_tests import self_tests
 from verification.judging.verdict import Outcome
-from verification.regression.baseline_change import Baseline, Update, updated
+from verification.regression.baseline_change import Baseline, updated
 from verification.regression.baseline_file import path_in, read_baseline, write_baseline
 from verification.running.checked_files import locked
 from verification.running.stored_run import StoredRun, confirm, read_run
@@ -114,13 +114,9 @@ def _print(stored: Baseline) -> None:
         numbers.add_row(escape(name), str(len(found)), str(sum(n.count for n in found)))
     history = named_table("when", "commit", "changed", "largest", "why")
     for item in stored.history:
-        history.add_row(item.when, item.commit or "-", *_changed(item), escape(item.why))
+        count = sum(count for count, _ in item.changes.values())
+        largest = max((change for _, change in item.changes.values() if change is not None), default=None)
+        changed = (str(count or "-"), "-" if largest is None else f"{largest:.1e}")
+        history.add_row(item.when, item.commit or "-", *changed, escape(item.why))
     print_out(numbers, "", history, "", escape(f"{last.numbers} numbers, on {last.machine}"))
     print_out(escape(", ".join(f"{name} {version}" for name, version in last.versions.items())))
-
-
-def _changed(item: Update) -> tuple[str, str]:
-    if not item.changes:
-        return "-", "-"
-    largest = [change for _, change in item.changes.values() if change is not None]
-    return str(sum(count for count, _ in item.changes.values())), f"{max(largest):.1e}" if largest else "-"

@@ -7,7 +7,7 @@ import time
 from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import numpy as np
 from cyclopts import Parameter
@@ -27,7 +27,7 @@ from verification.commands.common.terminal import (
     print_json,
     print_out,
 )
-from verification.guests.exam_subjects import reference_of, subject_of
+from verification.guests.exam_subjects import exact_profile, subject_of
 from verification.guests.examination import Examined, examined, outcome_counts, packed_cases
 from verification.guests.guest_description import FILE, Guest, parse_guest, read_guest
 from verification.guests.pages.guest_page import badge, summary
@@ -35,12 +35,12 @@ from verification.guests.pages.guest_page import page as render
 from verification.guests.slip_diagnosis import slips
 from verification.judging.outcome import Outcome
 from verification.page.number_text import engineering
+from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import unit_of
 from verification.regression.junit_xml import junit_xml
 from verification.regression.run_exit_codes import EXIT
 from verification.running.case_result import CaseResult, RunInfo, to_json
 from verification.running.checked_files import locked, write_atomically
-from verification.running.pool.pool_task import Task
 
 Folder = Annotated[Path | None, Parameter(name=["--output", "-o"])]
 UNCOATED, COATED = ("01_uncoated_steel", "13_uncoated_sliding"), ("05_ratio_4", "14_ratio_4_sliding")
@@ -135,12 +135,9 @@ def run(
     chosen = _chosen(cases or _packed(host))
     folder = output or host.folder / "report"
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
-
-    def run_tasks(tasks: Sequence[Task[Any]], limit: float) -> list[Any]:
-        return solve(tasks, jobs, limit, quiet or as_json)
-
+    silent = quiet or as_json
     with locked(folder):
-        found = examined(host, chosen, folder, run_tasks, jobs)
+        found = examined(host, chosen, folder, lambda tasks, limit: solve(tasks, jobs, limit, silent), jobs)
         info = run_info(shlex.join(["coatcheck", "guest", "run", guest, *cases]), started, jobs)
         page = folder / "report.html"
         texts = {
@@ -158,8 +155,8 @@ def run(
                 "guest": host.name,
                 "exit_code": code,
                 "cases": {r.name: dict(outcome_counts([r])) for r in found.results},
-                "known": list(found.known),
-                "unexpected": list(found.unexpected),
+                "known": found.known,
+                "unexpected": found.unexpected,
             }
         )
     elif not quiet:
@@ -207,7 +204,7 @@ def _show(guest: Guest, result: CaseResult) -> None:
     table = named_table("quantity", "line", "at", "guest", "exact", "difference", "verdict")
     for claim, verdict in result.verdicts:
         mine = result.profile_of.get((claim.quantity, claim.line, guest.name))
-        exact = result.profile_of.get((claim.quantity, claim.line, reference_of(result.problem)))
+        exact = exact_profile(result, claim.quantity, claim.line)
         if verdict.outcome is Outcome.UNSUPPORTED or mine is None or exact is None:
             continue
         if (claim.quantity, claim.line) in explained:
@@ -215,7 +212,7 @@ def _show(guest: Guest, result: CaseResult) -> None:
         # The point that decides, or where the exact value is largest.
         worst = verdict.worst if verdict.worst is not None else exact.position[np.abs(exact.value).argmax()]
         i = int(np.abs(exact.position - worst).argmin())
-        at = "" if claim.line == "contact" else f"{'z' if claim.line == 'axis' else 'x'} = {worst:.3g} m"
+        at = "" if claim.line == "contact" else f"{coordinate_of(claim.line)} = {worst:.3g} m"
         shown = [engineering(p.value[i], unit_of(claim.quantity), 6) for p in (mine, exact)]
         gap = "-" if verdict.difference is None else f"{verdict.difference:.1e}"
         line = "" if claim.line == "contact" else claim.line
@@ -223,8 +220,7 @@ def _show(guest: Guest, result: CaseResult) -> None:
         table.add_row(claim.quantity, line, at, *shown, gap, word)
     if table.rows:
         print_out(table)
-    failures = {s.failure for s in result.sources if s.failure}
-    for failure in sorted(failures):
+    for failure in sorted({s.failure for s in result.sources if s.failure}):
         print_out(f"[bold red]no result:[/] {escape(one_line(failure))}")
     missing = Counter(v.reason for _, v in result.verdicts if v.outcome is Outcome.UNSUPPORTED)
     for reason, count in missing.items():
@@ -240,7 +236,7 @@ def report_json(found: Examined, info: RunInfo) -> str:
 
 def exit_code(found: Examined) -> int:
     """The code of the worst verdict that is not a known failure."""
-    outcomes = {verdict.outcome for verdict in found.counted}
+    outcomes = {v.outcome for r, c, v in found.comparisons if found.guest.known_failure(r.name, c) is None}
     if found.unexpected:
         outcomes.add(Outcome.DISAGREES)
     for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE, Outcome.AGREES):

@@ -46,7 +46,7 @@ from verification.regression.baseline_change import regression, regression_json
 from verification.regression.baseline_file import read_baseline
 from verification.regression.junit_xml import junit_xml
 from verification.regression.run_exit_codes import run_code
-from verification.running.case_result import CaseResult, RunInfo
+from verification.running.case_result import CaseResult
 from verification.running.case_tasks import case_task, kept_result
 from verification.running.checked_files import StoreError, locked
 from verification.running.pool.pool_task import Task
@@ -128,32 +128,22 @@ def run(
                 passed=all(test.passed for test in tests),
                 studies=[study.outcome for study in studies],
             )
-            compared = regression_json(beside)
-            evidence = replace(
-                evidence,
-                accuracy=accuracy,
-                baseline=beside,
-            )
-            page = _write(results, info, evidence, output, junit)
+            from verification.report.report_material import Material
+            from verification.report.report_page import write_report
+
+            evidence = replace(evidence, accuracy=accuracy, baseline=beside)
+            material = Material(results, info, evidence, read_planes(output, results))
+            page = write_report(material, output, junit)
     except KeyboardInterrupt:
         return _stopped(chosen, output)
     if as_json:
         passed = {test.name: test.passed for test in tests}
-        print_json(run_json(results, page, compared, passed, evidence.beyond, code, studies))
+        print_json(run_json(results, page, regression_json(beside), passed, evidence.beyond, code, studies))
     elif not quiet:
         print_run(results, page, time.perf_counter() - begin, beside, studies)
     for name, lines in evidence.beyond.items():
         print_warnings(lines, name, strict=False, silent=silent)
     return code
-
-
-def _write(
-    results: Sequence[CaseResult], info: RunInfo, evidence: "Evidence", output: Path, junit: str
-) -> Path:
-    from verification.report.report_material import Material
-    from verification.report.report_page import write_report
-
-    return write_report(Material(results, info, evidence, read_planes(output, results)), output, junit)
 
 
 def _standing(chosen: Sequence[Case | PublishedCase], records: Path) -> "Evidence":

@@ -1,6 +1,5 @@
 """Examination of a guest on one case: the exact reference, then the question in the units of the guest."""
 
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -29,19 +28,11 @@ from verification.problem.line_profile import Profile
 from verification.problem.quantity import unit_of
 from verification.running.case_result import CaseResult, SourceResult, describe, from_json, to_json
 from verification.running.checked_files import StoreError, read_checked, write_checked
-from verification.running.contact_run import failed
 from verification.running.json_records import plain
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import fingerprint
 
 ALONG_SURFACE = ("surface", "oblique surface")  # lines that cross the contact edge
-
-
-@dataclass(frozen=True, eq=False)
-class Exam:
-    """The exact reference of a case as a ``result`` without verdicts; without profiles where it failed."""
-
-    result: CaseResult
 
 
 def prepare(case: Subject, path: Path) -> None:
@@ -56,16 +47,11 @@ def exam_path(folder: Path, case: Subject) -> Path:
     return folder / "problems" / f"{case.name}.json"
 
 
-def exam_task(case: Subject, folder: Path) -> Task[Exam]:
-    """Solving ``case`` exactly; its profiles at the points required of every guest."""
-    path = exam_path(folder, case)
-    cost = 1.0 + len(case.problem.coatings)
-    work, failed = partial(prepare, case, path), partial(_failed, case)
-    return Task(case.name, work, path, lambda data: Exam(from_json(data)), failed, cost=cost)
-
-
-def _failed(case: Subject, reason: str, seconds: float) -> Exam:
-    return Exam(failed(case, reason, seconds))
+def exam_task(case: Subject, folder: Path) -> Task[CaseResult]:
+    """Solving ``case`` exactly: a result without verdicts, its profiles at the points required of guests."""
+    path, cost = exam_path(folder, case), 1.0 + len(case.problem.coatings)
+    failed = partial(CaseResult.failed, case)
+    return Task(case.name, partial(prepare, case, path), path, from_json, failed, cost=cost)
 
 
 def kept_exam(folder: Path, case: Subject) -> CaseResult | None:
@@ -137,29 +123,19 @@ def _in_units(case: Subject, guest: Guest) -> Problem:
         return [Layer(E=E / Pa, nu=nu, thickness=h / m) for E, nu, h in coatings]
 
     E, nu = problem.substrate
-    solid: dict[str, Any] = {
-        "coatings": materials(problem.coatings),
-        "substrate": Layer(E=E / Pa, nu=nu),
-    }
+    solid: dict[str, Any] = {"coatings": materials(problem.coatings), "substrate": Layer(E=E / Pa, nu=nu)}
     if isinstance(problem, SquareLoad):
         return Square(side=problem.side / m, pressure=problem.pressure / Pa, **solid)
     if not isinstance(problem, CoatedContact):
         return Disc(load_radius=problem.load_radius / m, pressure=problem.pressure / Pa, **solid)
+    solid |= {"load": problem.load / N, "friction": problem.friction}
     if problem.indenter is not None:
         along, across = problem.indenter[1]
-        return Ellipsoid(
-            radius_x=along / m,
-            radius_y=across / m,
-            load=problem.load / N,
-            friction=problem.friction,
-            **solid,
-        )
+        return Ellipsoid(radius_x=along / m, radius_y=across / m, **solid)
     ball = problem.ball and ElasticBall(
         E=problem.ball[0] / Pa, nu=problem.ball[1], coatings=materials(problem.ball[2])
     )
-    return Sphere(
-        radius=problem.radius / m, load=problem.load / N, friction=problem.friction, ball=ball, **solid
-    )
+    return Sphere(radius=problem.radius / m, ball=ball, **solid)
 
 
 def profiles_of(answer: Answer, exam: CaseResult, guest: Guest) -> tuple[Profile, ...]:

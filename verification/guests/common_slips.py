@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import Akima1DInterpolator
 from scipy.optimize import minimize_scalar
 
-from verification.guests.exam_subjects import reference_of
+from verification.guests.exam_subjects import exact_radius, reference_of
 from verification.problem.array_types import Array
 from verification.problem.line_profile import ON_BALL
 from verification.problem.quantity import DISPLACEMENTS, PEAKS, STRESSES, unit_of
@@ -123,7 +123,7 @@ def _misfit(g: Array, p: Array, known: bool, near: NDArray[np.bool_] | None) -> 
 
 def _near_edge(result: CaseResult) -> dict[str, NDArray[np.bool_]]:
     """Points of the lines on the surface that lie beside the contact edge, where no slip is tested."""
-    a = float(result.profile_of["contact_radius", "contact", reference_of(result.problem)].value[0])
+    a = exact_radius(result)
     lines = {p.line: p.position for p in result.profiles if p.line in ("surface", "oblique surface")}
     return {line: np.asarray(np.abs(np.abs(x) - a) < EDGE * a) for line, x in lines.items()}
 
@@ -139,7 +139,9 @@ def _slips(
     places = {p.line: p.position for p in result.profiles}
     if any(q in ("contact_radius", "approach", "peak_pressure") for q, _ in wrong):
         yield from _inputs(result, exact, given, places)
-    mirrored = _moved(places, lambda x: -x, _signs("sigma_xz", "sigma_xy", "u_x", "tension_place"))
+    mirrored = _moved(
+        places, lambda x: -x, dict.fromkeys(("sigma_xz", "sigma_xy", "u_x", "tension_place"), -1.0)
+    )
     if result.problem["friction"]:
         yield CommonSlip(
             "sliding along -x",
@@ -159,10 +161,9 @@ def _slips(
         "of the opposite sign: compression positive? Here tension is positive.",
         _blurred(_signed(*STRESSES), PEAKS),
     )
-    a = float(exact["contact_radius", "contact"][0][0])
-    if shift := _shift(exact, given, places, a):
-        text = f"shifted by {shift:+.3g} m = {shift / a:+.3g} a in x: half a cell, a corner for a centre?"
-        yield CommonSlip("shift", text, _moved(places, lambda x: x - shift, {}))
+    a, key = exact_radius(result), ("pressure", "surface")
+    if key in given and (shift := fitted_shift(places["surface"], exact[key][0], given[key], a)):
+        yield CommonSlip("shift", shift_message(shift, a), _moved(places, lambda x: x - shift, {}))
     for unit, scopes in SCOPES.items():
         for factor, text in UNITS[unit].items():
             sizes = [
@@ -234,10 +235,6 @@ def input_factors(nu: float) -> dict[str, dict[float, str]]:
         "R": {2.0: "the diameter in place of the radius", 0.5: "R/2 in place of R"},
         "W": {2.0: "twice the load", 0.5: "half of the load", 0.25: "the load of a quarter model"},
     }
-
-
-def _signs(*quantities: str) -> dict[str, float]:
-    return dict.fromkeys(quantities, -1.0)
 
 
 def _signed(*quantities: str) -> Callable[[Values], Values]:
@@ -313,13 +310,14 @@ def _sides(values: Values) -> Values:
     return found
 
 
-def _shift(exact: Values, given: dict[Key, Array], places: dict[str, Array], a: float) -> float:
-    """The shift along x [m] that fits the form of the pressure best; 0 where none is clear."""
-    key = ("pressure", "surface")
-    if key not in given or not given[key].any():
-        return 0.0
-    x, e, g = places["surface"], exact[key][0], given[key]
+def fitted_shift(x: Array, e: Array, g: Array, a: float) -> float:
+    """The shift along x [m] by which the form of the exact values ``e`` fits ``g``; 0 where none is clear.
+
+    a : contact radius [m]; at its edge, where the slope of the pressure is infinite, nothing is compared.
+    """
     inner = np.abs(x) < (1 - EDGE) * a
+    if not e[inner].any() or not g[inner].any():
+        return 0.0
 
     def rest(s: float) -> float:
         moved = np.interp(x[inner] - s, x, e)
@@ -329,3 +327,8 @@ def _shift(exact: Values, given: dict[Key, Array], places: dict[str, Array], a: 
     found = minimize_scalar(rest, bounds=(-0.3 * a, 0.3 * a), method="bounded", options={"xatol": 1e-9 * a})
     clear = abs(found.x) > 1e-4 * a and rest(found.x) < EXPLAINED * rest(0.0)
     return float(found.x) if clear else 0.0
+
+
+def shift_message(shift: float, a: float) -> str:
+    """The message about values shifted by ``shift`` [m]."""
+    return f"shifted by {shift:+.3g} m = {shift / a:+.3g} a in x: half a cell, a corner for a centre?"

@@ -17,6 +17,7 @@ from verification.problem.array_types import Array, Coatings
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad
 from verification.problem.line_profile import Line, Profile, line_of, lines_of, oblique_lines
 from verification.problem.quantity import DISPLACEMENTS, IN_PLANE, QUANTITIES, STRESSES
+from verification.running.case_result import CaseResult
 from verification.sampling.line_sampling import positions, sample, sample_contact
 from verification.sources.exact_sources import hertz, solve_exactly
 from verification.sources.references.patch_displacement import surface_coefficient
@@ -50,6 +51,16 @@ def reference_of(problem: CoatedContact | Mapping[str, Any]) -> str:
     """The source of the exact values of a contact, or of its record: of an ellipsoid Hertz's closed form."""
     indenter = problem.get("indenter") if isinstance(problem, Mapping) else problem.indenter
     return CLOSED_FORM if indenter else REFERENCE
+
+
+def exact_profile(result: CaseResult, quantity: str, line: str = "contact") -> Profile | None:
+    """The exact values of ``quantity`` on ``line`` in ``result``; None where it has none."""
+    return result.profile_of.get((quantity, line, reference_of(result.problem)))
+
+
+def exact_radius(result: CaseResult) -> float:
+    """Contact radius [m] of the exact reference in ``result``."""
+    return float(result.profile_of["contact_radius", "contact", reference_of(result.problem)].value[0])
 
 
 @dataclass(frozen=True)

@@ -48,37 +48,26 @@ class Examined:
         return self.total.total() - self.total[Outcome.UNSUPPORTED]
 
     @cached_property
-    def _known(self) -> dict[tuple[str, Claim], str]:
-        """The reason of each comparison that is listed as a known failure."""
-        reasons = {
-            (result.name, claim): self.guest.known_failure(result.name, claim.quantity, claim.line)
+    def _listed(self) -> list[tuple[str, str, Outcome]]:
+        """Name, reason and outcome of each comparison that is listed as a known failure."""
+        return [
+            (f"{result.name}/{claim.quantity}/{claim.line}", reason, verdict.outcome)
             for result, claim, verdict in self.comparisons
             if verdict.outcome is not Outcome.UNSUPPORTED
-        }
-        return {key: reason for key, reason in reasons.items() if reason is not None}
-
-    @property
-    def counted(self) -> list[Verdict]:
-        """The verdict of every comparison but known failures."""
-        return [v for result, claim, v in self.comparisons if (result.name, claim) not in self._known]
+            and (reason := self.guest.known_failure(result.name, claim)) is not None
+        ]
 
     @property
     def known(self) -> list[tuple[str, str]]:
         """Name and reason of each known failure that does fail."""
-        return self._of_known(agrees=False)
+        return [(name, why) for name, why, outcome in self._listed if outcome is not Outcome.AGREES]
 
     @property
     def unexpected(self) -> list[tuple[str, str]]:
         """Name and reason of each listed known failure that does not fail."""
-        failing = {reason for _, reason in self.known}
-        return [item for item in self._of_known(agrees=True) if item[1] not in failing]
-
-    def _of_known(self, *, agrees: bool) -> list[tuple[str, str]]:
-        return [
-            (f"{result.name}/{claim.quantity}/{claim.line}", self._known[result.name, claim])
-            for result, claim, verdict in self.comparisons
-            if (result.name, claim) in self._known and (verdict.outcome is Outcome.AGREES) is agrees
-        ]
+        failing = {why for _, why in self.known}
+        listed = [(name, why) for name, why, outcome in self._listed if outcome is Outcome.AGREES]
+        return [(name, why) for name, why in listed if why not in failing]
 
 
 def examined(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve, jobs: int = 1) -> Examined:
@@ -130,7 +119,7 @@ def _exams(cases: Sequence[Subject], folder: Path, solve: Solve) -> list[CaseRes
     found = {case.name: exam for case in cases if (exam := kept_exam(folder, case)) is not None}
     new = [case for case in cases if case.name not in found]
     solved = solve([exam_task(case, folder) for case in new], EXACT_LIMIT)
-    found |= {case.name: exam.result for case, exam in zip(new, solved, strict=True)}
+    found |= {case.name: exam for case, exam in zip(new, solved, strict=True)}
     return [found[case.name] for case in cases]
 
 

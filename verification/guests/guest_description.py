@@ -14,6 +14,7 @@ from pydantic import Field, model_validator
 
 from verification.cases.toml_file import Strict, Text, read_bounded, read_toml
 from verification.cases.unit_numbers import Seconds
+from verification.judging.verdict import Claim
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import QUANTITIES
 from verification.sources.source_registry import SOURCES
@@ -26,7 +27,6 @@ _PLACE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
 
 Word = Annotated[str, Field(min_length=1, max_length=1000)]
 Level = Annotated[int | float, Field(gt=0)]
-LEAST_LEVELS, MOST_LEVELS = 3, 12
 
 
 class Supports(Strict):
@@ -73,7 +73,7 @@ class GuestFile(Strict):
     supports: Supports = Supports()
     units: Units = Units()
     refine: Annotated[
-        dict[str, Annotated[list[Level], Field(min_length=LEAST_LEVELS, max_length=MOST_LEVELS)]],
+        dict[str, Annotated[list[Level], Field(min_length=3, max_length=12)]],
         Field(max_length=1),
     ] = Field(default_factory=dict)
     known: Annotated[dict[str, Text], Field(default_factory=dict, max_length=1000)]
@@ -132,14 +132,11 @@ class Guest(GuestFile):
         """Whether the code gives ``quantity``, by its own statement."""
         return self.supports.stress or QUANTITIES[quantity].kind not in ("stress", "peak")
 
-    def known_failure(self, case: str, quantity: str, line: str) -> str | None:
+    def known_failure(self, case: str, claim: Claim) -> str | None:
         """The reason of a known failure; None where none is listed."""
-        for pattern, reason in self.known.items():
-            if fnmatchcase(f"{case}/{quantity}", pattern) or fnmatchcase(
-                f"{case}/{quantity}/{line}", pattern
-            ):
-                return reason
-        return None
+        names = (f"{case}/{claim.quantity}", f"{case}/{claim.quantity}/{claim.line}")
+        found = (why for pattern, why in self.known.items() if any(fnmatchcase(n, pattern) for n in names))
+        return next(found, None)
 
     def factor(self, unit: str) -> float:
         """SI value of the code's unit for quantities of the SI ``unit``."""

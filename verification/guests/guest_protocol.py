@@ -1,22 +1,17 @@
 """Protocol of the questions to a guest with its answers: a line of JSON each.
 
-``schema()`` is its JSON schema, which the package holds as ``protocol.schema.json``. Both sides are checked
-against it. A line of an answer begins with ``TOKEN``; all other lines are the guest's own, and ignored.
+The package holds its JSON schema as ``protocol.schema.json``; both sides are checked against it. A line of an
+answer begins with ``TOKEN``; all other lines are the guest's own, and ignored.
 """
 
 import json
-import math
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 VERSION: Literal["coatcheck-guest/1"] = "coatcheck-guest/1"
 TOKEN = "COATCHECK"
-_STRANGE = {
-    **dict.fromkeys(("NaN", "nan"), math.nan),
-    **dict.fromkeys(("Infinity", "inf"), math.inf),
-    **dict.fromkeys(("-Infinity", "-inf"), -math.inf),
-}
+_NOT_FINITE = ("NaN", "nan", "Infinity", "inf", "-Infinity", "-inf")
 
 
 class ProtocolError(ValueError):
@@ -117,9 +112,8 @@ class Question(_Strict):
 
 def _number(value: Any) -> Any:
     """NaN and infinity, which JSON does not have, as text."""
-    if isinstance(value, str):
-        return _STRANGE.get(value, value)
-    return float(value) if isinstance(value, int) and not isinstance(value, bool) else value
+    integer = isinstance(value, int) and not isinstance(value, bool)
+    return float(value) if integer or (isinstance(value, str) and value in _NOT_FINITE) else value
 
 
 Number = Annotated[float, BeforeValidator(_number)]
@@ -187,15 +181,3 @@ def check(answer: Answer, question: Question) -> None:
                     raise ProtocolError(f"{kind}: {quantity} on {line} has {shown}; {needed} needed")
                 if kind == "uncertainty" and quantity not in (answer.values or {}).get(line, {}):
                     raise ProtocolError(f"uncertainty of {quantity} on {line}, of which no values are given")
-
-
-def schema() -> dict[str, Any]:
-    """The JSON schema of both sides."""
-    from pydantic.json_schema import models_json_schema
-
-    _, definitions = models_json_schema(
-        [(Question, "validation"), (Answer, "validation")],
-        title="coatcheck guest protocol",
-        description=VERSION,
-    )
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **definitions}

@@ -31,7 +31,6 @@ from verification.running.contact_run import decide
 
 ORDERS = (0.5, 2.1)  # Eca and Hoekstra, J. Comput. Phys. 262 (2014) 104-130
 NEIGHBOURS = 5
-LEAST = 3  # levels
 
 
 def estimated(levels: Sequence[float], profiles: Sequence[Profile]) -> Array:
@@ -89,9 +88,8 @@ def judged(guest: Guest, case: Subject, exam: CaseResult, replies: Sequence[Solv
     reference = reference_of(case.problem)
     profiles |= {(p.quantity, p.line, reference): p for p in exam.profiles}
     seconds = replies[-1].seconds
-    memory = max((r.memory for r in replies if r.memory), default=None)
-    mine = SourceResult(guest.name, seconds, last.error, _diagnostics(guest, replies, memory))
-    exact = next((s for s in exam.sources if s.source == reference), SourceResult(reference, 0.0))
+    mine = SourceResult(guest.name, seconds, last.error, _diagnostics(guest, replies))
+    (exact,) = exam.sources
     outcomes = {guest.name: mine, reference: exact}
     verdicts = []
     for claim in claims_of(case, guest):
@@ -171,15 +169,14 @@ def _with_uncertainty(
 ) -> Profile:
     """``profile`` with its stated uncertainty, or that of the refinement study where every level gives it."""
     study = [p for level in levels for p in level if (p.quantity, p.line) == key]
-    if profile.uncertainty is not None or len(study) != len(guest.levels) or len(study) < LEAST:
+    if profile.uncertainty is not None or len(study) != len(guest.levels):
         return profile
     return replace(profile, uncertainty=estimated(guest.levels, study))
 
 
-def _diagnostics(guest: Guest, replies: Sequence[Solved], memory: int | None) -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    if memory:
-        found["memory"] = memory
+def _diagnostics(guest: Guest, replies: Sequence[Solved]) -> dict[str, Any]:
+    memory = max((r.memory for r in replies if r.memory), default=None)
+    found: dict[str, Any] = {"memory": memory} if memory else {}
     if guest.levels:
         found[guest.parameter] = list(guest.levels[: len(replies)])
         found["seconds"] = [r.seconds for r in replies]

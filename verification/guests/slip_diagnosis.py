@@ -10,14 +10,22 @@ from math import isclose, log
 from typing import Any
 
 import numpy as np
-from scipy.optimize import minimize_scalar
 
 from verification.guests.case_exam import ALONG_SURFACE
-from verification.guests.common_slips import EDGE, EXPLAINED, THOUSANDS, UNITS, Explanation, explanation
-from verification.guests.exam_subjects import reference_of
+from verification.guests.common_slips import (
+    EDGE,
+    EXPLAINED,
+    THOUSANDS,
+    UNITS,
+    Explanation,
+    explanation,
+    fitted_shift,
+    shift_message,
+)
+from verification.guests.exam_subjects import exact_profile, exact_radius, reference_of
 from verification.judging.verdict import Outcome
 from verification.problem.array_types import Array
-from verification.problem.line_profile import Profile
+from verification.problem.line_profile import Profile, coordinate_of
 from verification.problem.quantity import STRESSES, unit_of
 from verification.running.case_result import CaseResult
 
@@ -105,9 +113,7 @@ def slips(result: CaseResult, guest: str) -> list[Slip]:
 
 def _of_place(result: CaseResult, guest: str, quantity: str, line: str) -> str | None:
     """The message about one quantity on one line, or about one number."""
-    mine, exact = (
-        result.profile_of.get((quantity, line, source)) for source in (guest, reference_of(result.problem))
-    )
+    mine, exact = result.profile_of.get((quantity, line, guest)), exact_profile(result, quantity, line)
     if mine is None or exact is None or not np.isfinite(mine.value).all():
         return None
     return _of_number(mine, exact) if line == "contact" else _of_line(mine, exact, result)
@@ -129,7 +135,7 @@ def _expected(result: CaseResult, guest: str, found: Explanation) -> CaseResult:
 
 def _outside_zone(result: CaseResult, zone: float) -> CaseResult:
     """``result`` without the points that its claims leave out around the contact edge."""
-    a = float(result.profile_of["contact_radius", "contact", reference_of(result.problem)].value[0])
+    a = exact_radius(result)
     profiles = []
     for p in result.profiles:
         keep = np.abs(np.abs(p.position) - a) >= zone * a
@@ -188,7 +194,7 @@ def _of_line(mine: Profile, exact: Profile, result: CaseResult) -> str | None:
             best = (rest, message)
     if best is not None:
         return best[1]
-    a = float(result.profile_of["contact_radius", "contact", reference_of(result.problem)].value[0])
+    a = exact_radius(result)
     beside = np.abs(np.abs(x) - a) < EDGE * a
     if mine.line in ALONG_SURFACE and beside.any() and not beside.all():
         inside, outside = np.abs(g - e)[beside].max(), np.abs(g - e)[~beside].max()
@@ -198,11 +204,9 @@ def _of_line(mine: Profile, exact: Profile, result: CaseResult) -> str | None:
                 "edge in guest.toml leaves a zone out"
             )
     worst = int(np.argmax(np.abs(g - e)))
-    coordinate = "z" if mine.line == "axis" else "x"
-    where_worst = f"{coordinate} = {x[worst] / a:.3g} a"
     return (
         f"{UNEXPLAINED}: off by {np.abs(g - e)[worst] / size:.1e} of the largest value at "
-        f"{where_worst}, {error / _norm(e):.1e} on average"
+        f"{coordinate_of(mine.line)} = {x[worst] / a:.3g} a, {error / _norm(e):.1e} on average"
     )
 
 
@@ -216,22 +220,12 @@ def _candidates(mine: Profile, exact: Profile, result: CaseResult) -> Iterator[C
     yield _of_factor(-1.0, quantity), -e, None
     others = [name for name in STRESSES if name != quantity] if quantity in STRESSES else []
     for other in others:
-        profile = result.profile_of.get((other, line, reference_of(result.problem)))
+        profile = exact_profile(result, other, line)
         if profile is not None and _norm(profile.value - e) > FINE * _norm(e):
             axes = set(quantity[-2:]) ^ set(other[-2:])
             cause = f": {' and '.join(sorted(axes))} transposed?" if len(axes) == 2 else ""
             yield f"equal to {other}{cause}", profile.value, None
             yield f"equal to -{other}{cause}", -profile.value, None
-    if "side" in line:
-        flipped = line.replace("upper", "~").replace("lower", "upper").replace("~", "lower")
-        profile = result.profile_of.get((quantity, flipped, reference_of(result.problem)))
-        if profile is not None and _norm(profile.value - e) > FINE * _norm(e):
-            yield f"equal to the value on the {flipped}: the other layer?", profile.value, None
-    if line != "axis" and x.min(initial=0.0) < 0:
-        mirrored, common = np.interp(-x, x, e), (-x >= x.min()) & (-x <= x.max())
-        if _norm(mirrored - e) > FINE * _norm(e):
-            yield "mirrored in x: leading and trailing side exchanged?", mirrored, common
-            yield "mirrored in x, of the opposite sign: is sliding along +x?", -mirrored, common
     for stretch, message in (
         (2.0, "as if every position were doubled: a for the diameter, or a radius for 2 r?"),
         (0.5, "as if every position were halved: the diameter 2 a in place of a?"),
@@ -244,34 +238,12 @@ def _candidates(mine: Profile, exact: Profile, result: CaseResult) -> Iterator[C
     factor = float(g @ e / (e @ e))
     if not isclose(factor, 1, rel_tol=NEAR):
         yield _of_factor(factor, quantity), factor * e, None
-    yield from _shifted(mine, exact, result)
+    a = exact_radius(result)
+    if line != "axis" and (shift := fitted_shift(x, e, g, a)):
+        inside = (np.abs(x) + abs(shift) < np.abs(x).max()) & (np.abs(np.abs(x) - a) > EDGE * a)
+        yield shift_message(shift, a), np.interp(x - shift, x, e), inside
     offset = float(np.mean(g - e))
     yield f"off by the same {offset:.3g} {unit_of(quantity)} everywhere", e + offset, None
-
-
-def _shifted(mine: Profile, exact: Profile, result: CaseResult) -> Iterator[Candidate]:
-    """The exact values moved along the line by the length that fits best."""
-    g, e, x = mine.value, exact.value, mine.position
-    if mine.line == "axis":
-        return
-    a = float(result.profile_of["contact_radius", "contact", reference_of(result.problem)].value[0])
-    # At the edge the slope of the pressure is infinite.
-    slope = np.where(np.abs(np.abs(x) - a) > EDGE * a, np.gradient(e, x), 0.0)
-    if not slope.any():
-        return
-    shift = -float((g - e) @ slope / (slope @ slope))
-    keep = (x - abs(shift) > x.min()) & (x + abs(shift) < x.max()) & (np.abs(np.abs(x) - a) > EDGE * a)
-    if keep.sum() < 5:
-        return
-
-    def rest(s: float) -> float:
-        return _norm((g - np.interp(x - s, x, e))[keep])
-
-    bounds = sorted((0.1 * shift, 5 * shift))
-    shift = float(minimize_scalar(rest, bounds=bounds, method="bounded", options={"xatol": 1e-9 * a}).x)
-    if 1e-5 * a < abs(shift) < 0.3 * a:
-        text = f"shifted by {shift:+.3g} m = {shift / a:+.3g} a in x: half a cell, a corner for a centre?"
-        yield text, np.interp(x - shift, x, e), keep
 
 
 def _nearest(factor: float, names: dict[float, str]) -> str | None:

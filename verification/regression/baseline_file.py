@@ -97,8 +97,7 @@ def _stored(n: Numbers) -> _Profile:
 
 
 def _numbers(p: _Profile, case: _Case) -> Numbers:
-    value = p.value * p.step
-    return Numbers(p.source, p.quantity, p.line, case.lines[p.line], value, p.scale, p.U)
+    return Numbers(p.quantity, p.line, case.lines[p.line], p.value * p.step, p.source, p.U, p.scale)
 
 
 def _digits(values: Array, digits: int) -> Array:

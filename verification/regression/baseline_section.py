@@ -61,8 +61,7 @@ def section(found: Regression | None, anchors: Mapping[str, str]) -> Section | N
     # A case that is gone as a whole has its row above.
     here = [c for c in found.cases if any(d.state is not State.GONE for d in c.drifts)]
     moved = [(c, d) for c in here for d in c.drifts if d.state in (State.DRIFTED, State.GONE)]
-    table = case_table(found.cases, anchors, "Numbers of each case compared with the baseline.")
-    parts.append(Part("", [table, drift_table(moved)]))
+    parts.append(Part("", [_case_table(found.cases, anchors), _drift_table(moved)]))
     parts.append(Part(_judged(found), [_difference_table(found)], title="Manifest"))
     return Section("baseline", "Baseline", parts)
 
@@ -91,7 +90,7 @@ def _difference_table(found: Regression) -> Table:
     )
 
 
-def drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:
+def _drift_table(moved: Sequence[tuple[CaseDrift, Drift]]) -> Table:
     """The changed profiles, the largest change first."""
     order = sorted(moved, key=lambda item: -(float("inf") if item[1].change is None else item[1].change))
     more = f" The {MOST} of {len(order)} with the largest change." if len(order) > MOST else ""
@@ -115,20 +114,17 @@ def _state(state: State, note: str = "") -> Cell:
     return Cell(f"{mark} {state}", float(rank), f"verdict {css}".strip(), note)
 
 
-def case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str], caption: str) -> Table:
+def _case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str]) -> Table:
     """State and counts of numbers of each case; ``anchors`` leads to cases by name."""
+    places = {name: f"#{anchor}" for name, anchor in anchors.items()}
     columns: list[tuple[str, Callable[[CaseDrift], Value]]] = [
-        ("case", lambda case: Cell(case.title, note=case.name, href=_place(anchors.get(case.name)))),
+        ("case", lambda case: Cell(case.title, note=case.name, href=places.get(case.name, ""))),
         ("state", state_cell),
         *((str(state), partial(CaseDrift.count, state=state)) for state in COUNTED),
         ("largest change", lambda case: _change(case.change)),
         ("", lambda case: case.message),
     ]
-    return table_of(caption, cases, columns)
-
-
-def _place(anchor: str | None) -> str:
-    return f"#{anchor}" if anchor else ""
+    return table_of("Numbers of each case compared with the baseline.", cases, columns)
 
 
 def _change(change: float | None) -> Cell:

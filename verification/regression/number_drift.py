@@ -51,19 +51,10 @@ class State(StrEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Numbers:
-    """The numbers of one profile, in SI units.
+class Numbers(Profile):
+    """A profile whose changes count over ``scale`` [SI]."""
 
-    scale : divisor of a change of ``value``.   uncertainty : at each point; None where none is stated.
-    """
-
-    source: str
-    quantity: str
-    line: str
-    position: Array
-    value: Array
-    scale: float
-    uncertainty: Array | None
+    scale: float = 1.0
 
     @property
     def key(self) -> tuple[str, str, str]:
@@ -99,13 +90,16 @@ def measured(result: CaseResult) -> tuple[Numbers, ...]:
     """The numbers of a result that a baseline stores."""
     largest: dict[tuple[str, str], float] = defaultdict(float)
     for profile in result.profiles:
-        kind = (profile.source, _kind(profile))
-        largest[kind] = max(largest[kind], _size(profile.value))
-    return tuple(
-        _numbers(profile, FAINT * largest[profile.source, _kind(profile)])
-        for profile in result.profiles
-        if profile.value.size
-    )
+        key = (profile.source, _kind(profile))
+        largest[key] = max(largest[key], _size(profile.value))
+    found = []
+    for profile in result.profiles:
+        kind, scale = _kind(profile), _size(profile.value)
+        if kind not in ("scalar", "peak"):
+            scale = max(scale, FAINT * largest[profile.source, kind])
+        if profile.value.size:
+            found.append(Numbers(**vars(profile), scale=scale))
+    return tuple(found)
 
 
 def edges_of(numbers: Sequence[Numbers]) -> tuple[float, ...]:
@@ -154,11 +148,7 @@ def drift(then: Numbers, now: Numbers, edges: Sequence[float] = ()) -> Drift:
     found = Drift(*then.key, state, then.count, min(count, then.count), None, "; ".join(messages), beyond)
     if shift > SHIFT:
         return found
-    return replace(found, change=_largest(change))
-
-
-def _largest(change: Array) -> float:
-    return float(change.max()) if np.isfinite(change).all() else float("inf")
+    return replace(found, change=float(change.max()) if np.isfinite(change).all() else float("inf"))
 
 
 def _ratio(then: Numbers, now: Numbers, least: float) -> Array:
@@ -169,21 +159,6 @@ def _ratio(then: Numbers, now: Numbers, least: float) -> Array:
     old, new = (np.abs(one) for one in (then.uncertainty, now.uncertainty))
     ratio = np.maximum(new, least) / np.fmax(old, least)
     return np.where(np.isnan(old) == np.isnan(new), np.where(np.isnan(new), 1.0, ratio), np.inf)
-
-
-def _numbers(profile: Profile, faint: float) -> Numbers:
-    scale = _size(profile.value)
-    if _kind(profile) not in ("scalar", "peak"):
-        scale = max(scale, faint)
-    return Numbers(
-        profile.source,
-        profile.quantity,
-        profile.line,
-        profile.position,
-        profile.value,
-        scale,
-        profile.uncertainty,
-    )
 
 
 def _kind(profile: Profile) -> str:

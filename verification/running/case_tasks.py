@@ -16,11 +16,17 @@ from verification.judging.verdict import Outcome
 from verification.running import published_run
 from verification.running.case_result import CaseResult, describe, from_json, to_json
 from verification.running.checked_files import StoreError, read_checked, write_checked
-from verification.running.contact_run import failed, judge_case, solve_case
+from verification.running.contact_run import judge_case, solve_case
 from verification.running.json_records import plain
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import fingerprint
-from verification.running.stored_fields import plane_path, read_fields, read_plane, write_fields, write_plane
+from verification.running.stored_fields import (
+    confirm_fields,
+    plane_path,
+    read_plane,
+    write_fields,
+    write_plane,
+)
 from verification.sampling.stress_plane import plane_invariants, sample_plane
 from verification.sources.method_sources import sharing_pressure
 from verification.sources.source_record import Solver
@@ -45,7 +51,8 @@ def case_task(case: Case | PublishedCase, folder: Path, *, fields: bool = False)
         return Task(case.name, work, path, read, lost, cost=1.0, ahead=_METHOD_PACKAGES)
     work = partial(solve_and_store, case, path, plane_path(folder, case.name), folder if fields else None)
     alike = repr((replace(case.problem, friction=0.0), sorted(case.numerics.items())))
-    return Task(case.name, work, path, read, partial(failed, case), cost(case), alike, ahead=_METHOD_PACKAGES)
+    lost = partial(CaseResult.failed, case, warnings=case.warnings)
+    return Task(case.name, work, path, read, lost, cost(case), alike, ahead=_METHOD_PACKAGES)
 
 
 def cost(case: Case) -> float:
@@ -117,5 +124,5 @@ def kept_result(folder: Path, case: Case | PublishedCase, *, fields: bool = Fals
     if isinstance(case, Case):
         read_plane(plane_path(folder, case.name), case.text)
         if fields:
-            read_fields(folder, case.name, case.text)
+            confirm_fields(folder, case.name, case.text)
     return result if result.outcome is not Outcome.NO_RESULT else None

@@ -110,11 +110,6 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
     )
 
 
-def failed(case: Case, reason: str, seconds: float) -> CaseResult:
-    """The result of a case that could not be run at all."""
-    return CaseResult.failed(case, reason, seconds, warnings=case.warnings)
-
-
 def decide(
     claim: Claim,
     profiles: Mapping[tuple[str, str, str], Profile],

@@ -1,6 +1,5 @@
-"""Provenance of a run: versions, commit, machine, system libraries."""
+"""Provenance of a run: versions, commit, machine."""
 
-import ctypes.util
 import hashlib
 import os
 import platform
@@ -29,20 +28,6 @@ PACKAGES = (
 
 ROOT = Path(__file__).resolve().parents[2]
 CODE = (*(SOURCES[name].package for name in METHODS), "verification")
-
-# Shared libraries that the gmsh wheel opens and pip cannot bring, with the Debian/Ubuntu package of each.
-GMSH_LIBRARIES = {
-    "GLU": "libglu1-mesa",
-    "GL": "libgl1",
-    "Xrender": "libxrender1",
-    "Xcursor": "libxcursor1",
-    "Xfixes": "libxfixes3",
-    "Xft": "libxft2",
-    "Xinerama": "libxinerama1",
-    "fontconfig": "libfontconfig1",
-    "gomp": "libgomp1",
-}
-
 
 NOT_INSTALLED = "not installed"
 
@@ -153,15 +138,3 @@ def _processor() -> str:
         fields.setdefault(name.strip(), value.strip())
     found = [fields[name] for name in ("model name", "cpu family", "model", "stepping") if name in fields]
     return f", {' '.join(found)}" if found else ""
-
-
-def missing_libraries() -> tuple[str, ...]:
-    """Debian packages of the system libraries that gmsh needs and this machine lacks; () where gmsh loads."""
-    try:
-        import gmsh  # noqa: F401
-    except OSError as error:
-        absent = {p for name, p in GMSH_LIBRARIES.items() if ctypes.util.find_library(name) is None}
-        # The loader names one library; the search above may overlook it where ldconfig is absent.
-        absent |= {p for name, p in GMSH_LIBRARIES.items() if f"lib{name}." in str(error)}
-        return tuple(sorted(absent or set(GMSH_LIBRARIES.values())))
-    return ()

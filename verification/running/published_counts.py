@@ -16,12 +16,6 @@ def counts(results: Sequence[CaseResult]) -> tuple[int, int, int]:
 
 
 def published_message(results: Sequence[CaseResult]) -> str:
-    """Counts of published values, departures, recomputed values, changed digits in one line."""
+    """Counts of published values, departures, recomputed values in one line."""
     counted, departing, recomputed = counts(results)
-    text = f"{counted} published values count, {departing} depart and are listed, {recomputed} are recomputed"
-    groups = [result.published["digits"]["groups"] for result in results if "digits" in result.published]
-    changed = [group["counted"] for group in groups if "counted" in group]
-    if changed:
-        noticed, changes = (sum(count[key] for count in changed) for key in ("noticed", "changes"))
-        text += f"; {noticed} of {changes} changed digits of those that count are noticed"
-    return text
+    return f"{counted} published values count, {departing} depart and are listed, {recomputed} are recomputed"

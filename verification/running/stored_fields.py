@@ -7,7 +7,7 @@ semi-analytical method, have their checksums in a file beside them that checks i
 import hashlib
 from collections.abc import Iterable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +18,7 @@ from verification.running.case_result import CaseResult
 from verification.running.checked_files import (
     MAX_BYTES,
     StoreError,
+    read_bounded,
     read_checked,
     write_atomically,
     write_checked,
@@ -69,25 +70,12 @@ def read_planes(folder: Path, results: Iterable[CaseResult]) -> dict[str, Plane]
     return found
 
 
-@dataclass(frozen=True)
-class Fields:
-    """Files of a case: the finite element ``mesh``, the ``boxes`` layer by layer, their ``index``.
-
-    None and () where a method gave nothing; ``failures`` has the message of each such method.
-    """
-
-    mesh: Path | None
-    index: Path | None
-    boxes: tuple[Path, ...]
-    failures: Mapping[str, str]
-
-
 def fields_path(folder: Path, name: str) -> Path:
     """Where a run directory has the checksums of the fields of the case called ``name``."""
     return folder / "fields" / f"{name}.json"
 
 
-def write_fields(case: Case, solutions: Mapping[str, Solution], folder: Path) -> Fields:
+def write_fields(case: Case, solutions: Mapping[str, Solution], folder: Path) -> None:
     """Write the fields of ``solutions`` into ``folder``/fields, the file of checksums last.
 
     NAME-fem.vtu : the plane y = 0, quadratic triangles.   NAME-semi.vtm : an index of NAME-semi-layer-K.vtr,
@@ -113,45 +101,18 @@ def write_fields(case: Case, solutions: Mapping[str, Solution], folder: Path) ->
         "failures": failures,
     }
     write_checked(path, content)
-    return read_fields(folder, case.name, case.text)
 
 
-def read_fields(folder: Path, name: str, case_file: str | None = None) -> Fields:
-    """The fields of the case ``name`` in a run directory, every file's checksum confirmed.
+def confirm_fields(folder: Path, name: str, case_file: str) -> None:
+    """Confirm the checksum of every file of the fields of the case ``name`` in a run directory.
 
-    case_file : that they have to come from.   Raises StoreError, naming the file.
+    Raises StoreError, naming the file, where one is missing, damaged or of another ``case_file``.
     """
     path = fields_path(folder, name)
     data = read_checked(path)
-    if data.get("schema") != SCHEMA or (case_file is not None and data.get("case_file") != case_file):
+    if (data.get("schema"), data.get("case_file")) != (SCHEMA, case_file):
         raise StoreError(f"{path}: of another case file or version of this program; run the case again")
-    try:
-        sums = {str(file): str(stated) for file, stated in data["files"].items()}
-        failures = {str(source): str(message) for source, message in data["failures"].items()}
-    except (KeyError, AttributeError):
-        raise StoreError(f"{path}: not a list of fields; run the case again with --fields") from None
-    for file, stated in sums.items():
-        if file != Path(file).name:
-            raise StoreError(f"{path}: names {file!r}, which is no file beside it")
-        if _digest(path.parent / file) != stated:
-            raise StoreError(
-                f"{path.parent / file}: its checksum does not hold; run the case again with --fields"
-            )
-    found = [path.parent / file for file in sums]
-    return Fields(
-        next((p for p in found if p.suffix == ".vtu"), None),
-        next((p for p in found if p.suffix == ".vtm"), None),
-        tuple(p for p in found if p.suffix == ".vtr"),
-        failures,
-    )
-
-
-def _digest(path: Path) -> str:
-    try:
-        if path.stat().st_size > MAX_BYTES:
-            raise StoreError(f"{path}: larger than {MAX_BYTES} bytes; not a file of this program")
-        return hashlib.sha256(path.read_bytes()).hexdigest()
-    except OSError as error:
-        raise StoreError(
-            f"{path}: cannot be read ({error.strerror}); run the case again with --fields"
-        ) from None
+    for file, stated in data["files"].items():
+        place = path.parent / file
+        if hashlib.sha256(read_bounded(place, MAX_BYTES)).hexdigest() != stated:
+            raise StoreError(f"{place}: its checksum does not hold; run the case again with --fields")

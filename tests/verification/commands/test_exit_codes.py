@@ -1,6 +1,5 @@
 """The command line: exit codes, one-line messages, nothing written on bad input."""
 
-import json
 import os
 import subprocess
 from dataclasses import replace
@@ -11,9 +10,7 @@ import pytest
 from quick_case import COMMAND, QUICK, coatcheck
 
 from verification.cases.case_file import read_case
-from verification.judging.verdict import Claim, Outcome, Verdict
-from verification.regression.run_exit_codes import exit_code
-from verification.running.case_result import CaseResult
+from verification.judging.verdict import Outcome
 from verification.running.case_tasks import case_task
 from verification.running.pool.process_pool import run_tasks
 
@@ -41,23 +38,6 @@ def test_bad_input_is_one_sentence_code_2_and_nothing_written(tmp_path, words, s
     assert sorted(tmp_path.rglob("*")) == before
 
 
-def test_run_writes_the_report_and_resume_keeps_what_is_whole(tmp_path):
-    (tmp_path / "quick.toml").write_text(QUICK)
-    done = coatcheck("run", "quick.toml", "--json", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
-    summary = json.loads(done.stdout)
-    assert summary["cases"]["quick"]["outcome"] == "AGREES"
-    for name in ("report.html", "report.json", "junit.xml", "cases/quick.json"):
-        assert (tmp_path / "reports" / name).stat().st_size > 0
-    stored = tmp_path / "reports" / "cases" / "quick.json"
-    first = stored.stat().st_mtime_ns
-    assert coatcheck("run", "quick.toml", "--resume", "--quiet", cwd=tmp_path).returncode == 0
-    assert stored.stat().st_mtime_ns == first
-    stored.write_bytes(stored.read_bytes()[:-100])
-    assert coatcheck("run", "quick.toml", "--resume", "--quiet", cwd=tmp_path).returncode == 0
-    assert stored.stat().st_mtime_ns != first
-
-
 def test_process_that_ends_badly_is_no_result_with_the_reason(tmp_path):
     (tmp_path / "quick.toml").write_text(QUICK)
     quick = read_case(tmp_path / "quick.toml")
@@ -65,25 +45,6 @@ def test_process_that_ends_badly_is_no_result_with_the_reason(tmp_path):
     result = run_tasks([broken], jobs=1, time_limit=100)[0]
     assert result.outcome is Outcome.NO_RESULT
     assert "code 1" in result.verdicts[0][1].reason
-
-
-@pytest.mark.parametrize(
-    ("outcomes", "code"),
-    [
-        (["AGREES", "AGREES"], 0),
-        (["AGREES", "INCONCLUSIVE"], 4),
-        (["INCONCLUSIVE", "NO_RESULT"], 3),
-        (["NO_RESULT", "DISAGREES", "INCONCLUSIVE"], 1),
-        ([], 3),
-    ],
-)
-def test_exit_code_is_that_of_the_worst_outcome(outcomes, code):
-    claim = Claim("peak_pressure", "contact", ("semianalytic", "hertz"), 1e-3, "why")
-    results = [
-        CaseResult("n", "t", "s", {}, (), (), ((claim, Verdict(Outcome(outcome), "why")),), 0.0)
-        for outcome in outcomes
-    ]
-    assert exit_code(results) == code
 
 
 def test_missing_system_library_names_the_packages_and_writes_nothing(tmp_path):

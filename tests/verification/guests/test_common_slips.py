@@ -7,13 +7,9 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from guest_exams import GUEST, prepared, question
+from guest_exams import prepared, slips_of
 
-from verification.guests.doors.program_door import Solved
 from verification.guests.exam_subjects import REFERENCE
-from verification.guests.guest_protocol import VERSION, Answer
-from verification.guests.guest_verdicts import judged
-from verification.guests.slip_diagnosis import slips
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
 from verification.sampling.line_sampling import sample, sample_contact
 from verification.sources.exact_sources import solve_exactly
@@ -27,8 +23,6 @@ class Planted:
 
     def __init__(self, name, folder):
         self.case, self.exam = prepared(name, folder)
-        asked = question(self.case, self.exam)
-        self.asked = {line.line: line.quantities for line in asked.lines} | {"contact": asked.contact}
 
     def values(self, names):
         """The answers with slips; the field of -f is that of no friction twice, less that of f."""
@@ -36,7 +30,6 @@ class Planted:
         still, found = (fields(self, moved, sliding, E) for sliding in (False, True))
         if "sliding along -x" in names:
             found = {key: 2 * still[key] - v if key[1] != "contact" else v for key, v in found.items()}
-        if "sliding along -x" in names:
             found["tension_place", "contact"] = -found["tension_place", "contact"]
         for name in names:
             found = OUTPUT.get(name, lambda values: values)(found)
@@ -44,12 +37,7 @@ class Planted:
 
     def named(self, names):
         """What the diagnosis names where the slips ``names`` were made."""
-        plain: dict = {}
-        for (q, line), value in self.values(names).items():
-            if q in self.asked.get(line, ()):
-                plain.setdefault(line, {})[q] = float(value[0]) if line == "contact" else value.tolist()
-        answer = Answer(protocol=VERSION, id="x", values=plain)
-        found = slips(judged(GUEST, self.case, self.exam, [Solved(answer, 0.0)]), "g")
+        found = slips_of(self.case, self.exam, self.values(names))
         return sorted(slip.name or SCALAR.get(slip.message.rpartition(": ")[2], str(slip)) for slip in found)
 
 
@@ -57,11 +45,7 @@ class Planted:
 def fields(planted, moved, sliding, E_for_E_star):
     """Every exact value, perhaps at points moved by 0.03 a along -x, without friction, with another E."""
     E, nu = planted.case.problem.substrate
-    problem = (
-        replace(planted.case.problem, substrate=(E * (1 - nu**2), nu))
-        if E_for_E_star
-        else planted.case.problem
-    )
+    problem = replace(planted.case.problem, substrate=(E * (1 - nu**2 * E_for_E_star), nu))
     solution = solve_exactly(problem if sliding else replace(problem, friction=0.0))
     shift = 0.03 * solution.contact_radius * moved
     at = {p.line: p.position for p in planted.exam.profiles}

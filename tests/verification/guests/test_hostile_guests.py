@@ -42,17 +42,13 @@ NO, AGREE, OFF, NONE = Outcome.NO_RESULT, Outcome.AGREES, Outcome.DISAGREES, Out
 PROGRAMS = {
     "good": ("answer()", AGREE, "within the claimed"),
     "hangs": ("time.sleep(1000)", NO, "no answer after 0.4 s"),
-    "spins": ("while True: pass", NO, "no answer after"),
     "crashes": ("os.kill(os.getpid(), signal.SIGSEGV)", NO, "crashed with signal 11"),
     "raises": ("raise RuntimeError('no licence')", NO, "no licence"),
     "exits_0_without_answer": ("sys.exit(0)", NO, "ended with code 0 without an answer"),
-    "exits_9_after_its_answer": ("answer(); sys.exit(9)", AGREE, ""),
     "closes_its_output": ("os.close(1); time.sleep(3)", NO, "closed its output"),
     "half_a_line": ('say(\'COATCHECK {"protocol": "coatch\'); sys.exit(0)', NO, "in the middle of an answer"),
-    "no_newline": ("say('COATCHECK ' + json.dumps(good)); sys.exit(0)", NO, "in the middle of an answer"),
     "chatter_before": ("say('Iteration 1\\n\\x00\\xff\\n'); answer()", AGREE, ""),
     "chatter_without_newline": ("say('x' * 10**6); answer()", NO, "without an answer"),
-    "chatter_on_stderr": ("sys.stderr.write('x' * 10**7); answer()", AGREE, ""),
     "not_json": ("say('COATCHECK 42 apples\\n')", NO, "not JSON"),
     "deeply_nested": ("say('COATCHECK ' + '[' * 100000 + '\\n')", NO, "not JSON"),
     "wrong_id": ("good['id'] = 'another'; answer()", NO, "answers the question 'another'"),
@@ -61,11 +57,8 @@ PROGRAMS = {
     "unsupported": ("good.pop('values'); good['unsupported'] = 'not today'; answer()", NONE, "not today"),
     "error": ("good.pop('values'); good['error'] = 'did not converge'; answer()", NO, "did not converge"),
     "nan": ("c['contact_radius'] = float('nan'); answer()", NO, "no finite contact_radius"),
-    "negative": ("c['contact_radius'] *= -1; answer()", OFF, "exceeds the claimed"),
     "text_for_a_number": ("c['contact_radius'] = 'wide'; answer()", NO, "contact_radius"),
-    "number_for_a_list": ("f['pressure'] = p0; answer()", NO, "values are needed"),
     "too_short": ("f['pressure'].pop(); answer()", NO, "values are needed"),
-    "unknown_quantity": ("c['colour'] = 3.0; answer()", NO, "'colour' was not asked"),
     "empty_values": ("values.clear(); answer()", NONE, "not answered"),
     "uncertainty_of_nothing": (
         "good['uncertainty'] = {'surface': {'sigma_xx': [0.0] * len(x)}}; answer()",
@@ -91,11 +84,6 @@ PROGRAMS = {
 }
 SLOW = {
     "a_gigabyte_of_output": ("while True: say('x' * 10**6 + '\\n')", NO, "more than 64 MB without an answer"),
-    "a_gigabyte_of_stderr": (
-        "for _ in range(1000): sys.stderr.write('x' * 10**6)\nanswer()",
-        AGREE,
-        "",
-    ),
 }
 
 
@@ -122,18 +110,14 @@ def verdict_on(hertz, program, folder, limit=LIMIT):
     return next(v for c, v in result.verdicts if c.quantity == "contact_radius")
 
 
-def is_patient(name):
-    """Whether a program must end by itself: start and reading take their time on a machine at work."""
-    return "hang" not in name and "spins" not in name and "drips" not in name
-
-
 @pytest.fixture(scope="module")
 def verdicts(hertz, tmp_path_factory):
     """The verdict on each program; several at a time, since most of them do nothing but wait."""
 
     def verdict_of(name):
-        program, outcome, _ = PROGRAMS[name]
-        limit = LIMIT if outcome is NO and not is_patient(name) else 20.0
+        program, *_ = PROGRAMS[name]
+        # Who must end by itself has time: start and reading take theirs on a machine at work.
+        limit = LIMIT if name == "hangs" else 20.0
         return verdict_on(hertz, program, tmp_path_factory.mktemp(name), limit)
 
     with ThreadPoolExecutor(8) as pool:

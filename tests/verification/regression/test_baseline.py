@@ -67,15 +67,6 @@ def test_a_run_is_the_same_as_itself_through_the_file(tmp_path):
     assert found.count(State.SAME) == stored.last.numbers > 5000
 
 
-@pytest.mark.parametrize(("by", "state"), [(2e-8, State.DRIFTED), (0.5e-8, State.SAME)])
-def test_a_number_drifts_beyond_1e_8_of_the_largest_of_its_profile(by, state):
-    # Position 0 is the largest of this profile, the last one is near zero: both are measured by the largest.
-    for index in (0, -1):
-        found = case_drift(changed(RESULT, index, by), baseline_of(RESULT))
-        assert found.state is state
-    assert drifted(changed(RESULT, 0, 2e-8)) == [("fem_reference", "sigma_xx", "axis")]
-
-
 def test_a_value_at_the_contact_edge_is_compared_by_its_uncertainty():
     profile = RESULT.profile_of["pressure", "surface", "fem_reference"]
     a = RESULT.profile_of["contact_radius", "contact", "integral_equation"].value[0]
@@ -118,37 +109,11 @@ def test_a_profile_that_is_all_but_zero_is_measured_by_its_fellows():
     assert drifted(changed(RESULT, 0, 1e-4, "sigma_xz")) == [("fem_reference", "sigma_xz", "axis")]
 
 
-def test_what_is_not_finite_has_drifted():
-    assert drifted(changed(RESULT, 0, np.nan)) == [("fem_reference", "sigma_xx", "axis")]
-    found = case_drift(changed(RESULT, 0, np.inf), baseline_of(RESULT))
-    assert found.state is State.DRIFTED
-    json.dumps(
-        regression_json(regression([RESULT], baseline_of(RESULT), "b", INFO, whole=True)), allow_nan=False
-    )
-    # a number that never was one has not changed
+def test_what_is_not_finite_is_strict_json_and_no_change_where_it_never_was_finite():
+    off = changed(RESULT, 0, np.inf)
+    assert case_drift(off, baseline_of(RESULT)).state is State.DRIFTED
+    json.dumps(regression_json(regression([off], baseline_of(RESULT), "b", INFO)), allow_nan=False)
     assert drifted(changed(RESULT, 0, np.nan), changed(RESULT, 0, np.nan)) == []
-
-
-@pytest.mark.parametrize(
-    ("times", "state", "beyond"),
-    [
-        (10.0, State.DRIFTED, True),
-        (3.9, State.DRIFTED, False),
-        (0.3, State.DRIFTED, False),
-        (0.1, State.DRIFTED, True),
-        (1.05, State.SAME, False),
-    ],
-)
-def test_an_uncertainty_drifts_when_its_size_is_another(times, state, beyond):
-    profiles = tuple(
-        replace(p, uncertainty=times * p.uncertainty) if p.source == "fem_reference" else p
-        for p in RESULT.profiles
-        if p.uncertainty is not None
-    )
-    found = case_drift(replace(RESULT, profiles=profiles), baseline_of(RESULT))
-    assert (found.state, found.beyond) == (state, beyond)
-    if state is State.DRIFTED:
-        assert {d.source for d in found.drifts if d.state is State.DRIFTED} == {"fem_reference"}
 
 
 def test_points_that_moved_are_said_to_have_moved():
@@ -179,17 +144,6 @@ def test_cases_and_sources_come_and_go():
     assert regression([dead], base, "b", INFO, whole=False).drifted
     assert not regression([RESULT, new], base, "b", INFO, whole=False).drifted
     assert not regression([dead], None, "b", INFO, whole=True).drifted
-
-
-def test_drift_elsewhere_is_told_but_is_no_fault_of_the_code():
-    base = baseline_of(RESULT)
-    moved, beyond = (changed(RESULT, 0, by) for by in (1e-6, 1e-5))  # U is 3e-6 p_h
-    assert regression([moved], base, "b", INFO, whole=False).unexplained
-    for other in (replace(INFO, machine="another processor"), replace(INFO, versions={"numpy": "0"})):
-        found = regression([moved], base, "b", other, whole=False)
-        assert found.drifted
-        assert not found.unexplained
-        assert regression([beyond], base, "b", other, whole=False).unexplained
 
 
 def test_an_update_keeps_every_reason_with_what_changed(tmp_path):

@@ -80,39 +80,6 @@ def test_less_that_is_judged_is_a_failure_on_any_machine(recorded, change, messa
     assert any(message in row.message for row in found.less), found.less
 
 
-@pytest.mark.parametrize(
-    ("change", "failing"),
-    [
-        (
-            Edit(
-                "verification.sampling.line_sampling:sample",
-                "stress_with_uncertainty(solution, points, 0.0, depth",
-                "stress_with_uncertainty(solution, points, 0.3 * solution.contact_radius, depth",
-            ),
-            "sampling",
-        ),
-        (
-            Edit("verification.regression.junit_xml:_mark", "if outcome is Outcome.AGREES:", "if True:"),
-            "JUnit",
-        ),
-        (
-            Edit("verification.regression.run_exit_codes:run_code", "if not passed:", "if False:"),
-            "exit codes",
-        ),
-        (Edit("verification.regression.run_exit_codes:exit_code", "in found:", "in ():"), "exit codes"),
-        (
-            Edit("verification.regression.run_exit_codes:run_code", "LESS if beside.less else", ""),
-            "exit codes",
-        ),
-        (TENFOLD, "coverage"),
-        (Edit(DECIDE, ZONE, "a.position < 0"), "coverage"),
-    ],
-)
-def test_a_self_test_notices_what_no_number_shows(change, failing):
-    with planted((change,)):
-        assert failing in {test.name for test in self_tests() if not test.passed}
-
-
 def test_a_case_that_claims_nothing_is_refused(tmp_path):
     with (
         planted(

@@ -13,7 +13,6 @@ import pytest
 from verification.cases.case_file import read_case, shipped_cases
 from verification.commands.common.known_folders import BASELINE
 from verification.judging.verdict import Outcome
-from verification.problem.line_profile import Profile
 from verification.regression.baseline_file import read_baseline
 from verification.regression.number_drift import TOLERANCE, Numbers, State, drift
 from verification.running.case_result import SourceResult
@@ -30,12 +29,7 @@ def cases():
     assert stored is not None
     found = {}
     for name, path in shipped_cases().items():
-        profiles = {
-            (n.quantity, n.line, n.source): Profile(
-                n.quantity, n.line, n.position, n.value, n.source, n.uncertainty
-            )
-            for n in stored.cases[name]
-        }
+        profiles = {(n.quantity, n.line, n.source): n for n in stored.cases[name]}
         found[name] = read_case(path), stored.cases[name], profiles
     return found
 
@@ -64,8 +58,7 @@ def test_every_one_of_2000_random_changes_is_noticed(cases):
         drifts = [drift(then, now) for then, now in rows]
         moved = dict(profiles)
         for _, now in rows:
-            key = now.quantity, now.line, now.source
-            moved[key] = replace(profiles[key], value=now.value, uncertainty=now.uncertainty)
+            moved[now.quantity, now.line, now.source] = now
         outcomes = dict.fromkeys((n.source for n in stored), SourceResult("", 0.0))
         touched = {(now.quantity, now.line, now.source) for _, now in rows}
         verdicts = [

@@ -8,8 +8,8 @@ import fem_reference
 import semianalytic
 from verification.cases.case_file import parse_case
 from verification.problem.quantity import STRESSES
-from verification.running.checked_files import StoreError
-from verification.running.stored_fields import read_fields, write_fields
+from verification.running.checked_files import StoreError, read_checked
+from verification.running.stored_fields import confirm_fields, write_fields
 from verification.sampling import vtk_files
 
 pv = pytest.importorskip("pyvista")
@@ -37,13 +37,19 @@ def solutions(case):
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory, case, solutions):
     folder = tmp_path_factory.mktemp("run")
-    found = write_fields(case, solutions, folder)
-    assert not found.failures
-    return folder
+    write_fields(case, solutions, folder)
+    confirm_fields(folder, "one", case.text)
+    return folder / "fields"
 
 
-def test_the_mesh_carries_the_stresses_of_its_own_side(case, folder, solutions):
-    grid = pv.read(read_fields(folder, "one", case.text).mesh)
+@pytest.fixture(scope="module", params=["fem.vtu", "semi-layer-0.vtr", "semi-layer-1.vtr"])
+def grid(request, folder):
+    """Each file that holds stresses."""
+    return pv.read(folder / f"one-{request.param}")
+
+
+def test_the_mesh_carries_the_stresses_of_its_own_side(folder, solutions):
+    grid = pv.read(folder / "one-fem.vtu")
     assert set(grid.point_data) == FIELDS
     x, y, z = grid.points.T
     assert not y.any()
@@ -60,8 +66,8 @@ def test_the_mesh_carries_the_stresses_of_its_own_side(case, folder, solutions):
         np.testing.assert_allclose(grid.point_data["displacement [m]"][mine], u.T, rtol=0, atol=1e-18)
 
 
-def test_the_boxes_carry_stress_and_displacement_layer_by_layer(case, folder, solutions):
-    index = pv.read(read_fields(folder, "one", case.text).index)
+def test_the_boxes_carry_stress_and_displacement_layer_by_layer(folder, solutions):
+    index = pv.read(folder / "one-semi.vtm")
     assert [index.get_block_name(k) for k in range(index.n_blocks)] == ["layer 0", "layer 1"]
     solution, p0 = solutions["semianalytic"], solutions["semianalytic"].peak_pressure
     for layer, grid in enumerate(index):
@@ -84,50 +90,42 @@ def test_the_boxes_carry_stress_and_displacement_layer_by_layer(case, folder, so
     assert upper.max() == lower.min() == pytest.approx(40e-6)
 
 
-def test_von_mises_is_that_of_the_six_stresses(case, folder):
-    found = read_fields(folder, "one", case.text)
-    for path in (found.mesh, *found.boxes):
-        data = pv.read(path).point_data
-        xx, yy, zz, xy, yz, xz = (data[f"sigma_{name} [Pa]"] for name in ("xx", "yy", "zz", "xy", "yz", "xz"))
-        square = ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2)
-        np.testing.assert_allclose(data["von_mises [Pa]"], np.sqrt(square), rtol=1e-6, atol=1.0)
+def test_von_mises_is_that_of_the_six_stresses(grid):
+    data = grid.point_data
+    xx, yy, zz, xy, yz, xz = (data[f"sigma_{name} [Pa]"] for name in ("xx", "yy", "zz", "xy", "yz", "xz"))
+    square = ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) / 2 + 3 * (xy**2 + yz**2 + xz**2)
+    np.testing.assert_allclose(data["von_mises [Pa]"], np.sqrt(square), rtol=1e-6, atol=1.0)
 
 
-def test_every_file_says_where_it_comes_from(case, folder):
-    found = read_fields(folder, "one", case.text)
-    for path in (found.mesh, *found.boxes):
-        grid = pv.read(path)
-        if path == found.mesh:
-            assert bytes(grid.field_data["case file [UTF-8]"]).decode() == case.text
-        else:
-            assert grid.field_data["case file"][0] == case.text
-        assert grid.field_data["contact radius [m]"][0] > 0
+def test_every_file_says_where_it_comes_from(case, grid):
+    if "case file" in grid.field_data:
+        assert grid.field_data["case file"][0] == case.text
+    else:
+        assert bytes(grid.field_data["case file [UTF-8]"]).decode() == case.text
+    assert grid.field_data["contact radius [m]"][0] > 0
 
 
 def test_boxes_of_a_fine_grid_leave_out_more_of_it(tmp_path, case, solutions, monkeypatch):
     monkeypatch.setattr(vtk_files, "ALONG", 9)
-    found = write_fields(case, {"semianalytic": solutions["semianalytic"]}, tmp_path)
-    for path in found.boxes:
-        assert pv.read(path).dimensions[:2] == (9, 9)
-        assert 0.0 in pv.read(path).x
+    write_fields(case, {"semianalytic": solutions["semianalytic"]}, tmp_path)
+    boxes = [pv.read(tmp_path / "fields" / f"one-semi-layer-{layer}.vtr") for layer in (0, 1)]
+    assert all(box.dimensions[:2] == (9, 9) and 0.0 in box.x for box in boxes)
 
 
 def test_damage_and_other_case_files_are_noticed(tmp_path, case, solutions):
-    found = write_fields(case, {"fem_reference": solutions["fem_reference"]}, tmp_path)
-    assert (found.index, found.boxes) == (None, ())
+    write_fields(case, {"fem_reference": solutions["fem_reference"]}, tmp_path)
     with pytest.raises(StoreError, match="another"):
-        read_fields(tmp_path, "one", "another")
-    data = bytearray(found.mesh.read_bytes())
+        confirm_fields(tmp_path, "one", "another")
+    mesh = tmp_path / "fields" / "one-fem.vtu"
+    data = bytearray(mesh.read_bytes())
     data[len(data) // 2] ^= 4
-    found.mesh.write_bytes(data)
-    with pytest.raises(StoreError, match=r"one-fem\.vtu"):
-        read_fields(tmp_path, "one", case.text)
-    found.mesh.unlink()
-    with pytest.raises(StoreError, match=r"one-fem\.vtu"):
-        read_fields(tmp_path, "one", case.text)
+    mesh.write_bytes(data)
+    for _ in ("damaged", "missing"):
+        with pytest.raises(StoreError, match=r"one-fem\.vtu"):
+            confirm_fields(tmp_path, "one", case.text)
+        mesh.unlink(missing_ok=True)
 
 
 def test_a_method_without_fields_leaves_a_sentence(tmp_path, case):
-    found = write_fields(case, {"semianalytic": object()}, tmp_path)
-    assert "AttributeError" in found.failures["semianalytic"]
-    assert (found.mesh, found.boxes) == (None, ())
+    write_fields(case, {"semianalytic": object()}, tmp_path)
+    assert "AttributeError" in read_checked(tmp_path / "fields" / "one.json")["failures"]["semianalytic"]

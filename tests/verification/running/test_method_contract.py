@@ -88,12 +88,6 @@ def test_surface_coefficients_act_as_the_moduli(case, solved, exact, monkeypatch
     assert found == pytest.approx(wanted, rel=WITHIN)
 
 
-def test_the_load_acts_as_in_the_exact_contact(case, solved, exact):
-    more = replace(case.problem, load=STEP * case.problem.load)
-    found = changes(solved, solve_semianalytic(more, NUMERICS))
-    assert found == pytest.approx(changes(exact, solve_exactly(more, NUMERICS)), rel=WITHIN)
-
-
 def test_the_gap_acts_as_the_radius(case, solved, exact, monkeypatch):
     sharper = replace(case.problem, radius=case.problem.radius / STEP)
     wanted = changes(exact, solve_exactly(sharper, NUMERICS))

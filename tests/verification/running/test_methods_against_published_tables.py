@@ -79,42 +79,6 @@ def test_sums_of_stresses_are_sums_of_stresses(disc):
     assert values(disc, "sigma_zz - sigma_xx", at, DISC)[0] == pytest.approx(zz - xx)
 
 
-def tampered(case, column, change):
-    """The case with one printed value changed by ``change`` times what it can bear."""
-    columns = []
-    for item in case.columns:
-        p = item.profile
-        if item.column == column:
-            moved = p.value.copy()
-            moved[3] += change * (p.uncertainty[3] + 1e-4 * item.scale)
-            p = replace(p, value=moved)
-        columns.append(replace(item, profile=p))
-    return replace(case, columns=tuple(columns))
-
-
-@pytest.mark.parametrize("column", ["sig_x", "sig_xz", "u_z"])
-def test_a_wrong_digit_in_a_table_disagrees(column):
-    case = read_published(SHIPPED["ellea1_halfspace_off_axis"])
-    solver = {"semianalytic": semianalytic}
-    wrong = run(tampered(case, column, 3.0), solver)
-    disagreeing = {c.line.rsplit(" ", 1)[1] for c, v in wrong.verdicts if v.outcome is Outcome.DISAGREES}
-    assert disagreeing == {column}
-
-
-def test_a_departure_that_is_not_listed_disagrees():
-    case = read_published(SHIPPED["ahlvin_ulery_1962"])
-    solver = {"integral_equation": solvers()["integral_equation"]}
-    listed = run(case, solver)
-    none = tuple(replace(p, departure=np.zeros_like(p.departure)) for p in case.columns)
-    unlisted = run(replace(case, columns=none), solver)
-    for (claim, good), (_, bad) in zip(listed.verdicts, unlisted.verdicts, strict=True):
-        if claim.between[0] == "integral_equation":
-            # Every line of this table has one.
-            assert good.outcome is Outcome.AGREES, good.reason
-            assert "solution" in good.reason
-            assert bad.outcome is Outcome.DISAGREES, claim.line
-
-
 @pytest.mark.parametrize(
     ("name", "file", "old", "new", "column"),
     [
@@ -133,9 +97,7 @@ def test_a_changed_cell_of_a_shipped_file_disagrees(tmp_path, name, file, old, n
     assert text.count(old) == 1
     (tmp_path / file).write_text(text.replace(old, new))
     (tmp_path / f"{name}.toml").write_text(SHIPPED[name].read_text())
-    begin = time.perf_counter()
     result = run(read_published(tmp_path / f"{name}.toml"), {"semianalytic": semianalytic})
-    assert 0 < result.seconds <= time.perf_counter() - begin
     bad = [c.line for c, v in result.verdicts if v.outcome is Outcome.DISAGREES]
     assert len(bad) == 1
     assert bad[0].endswith(f"column {column}")
@@ -156,8 +118,7 @@ def test_a_method_that_fails_leaves_its_sentence():
 
 def test_incompressible_solid_is_reached_by_extrapolation():
     soft = replace(DISC, substrate=(1e9, 0.5))
-    quick = semianalytic
-    carried, direct = extrapolated(soft, quick), quick(soft)
+    carried, direct = extrapolated(soft, semianalytic), semianalytic(soft)
     z = np.array([0.03, 0.1, 0.3])
     gap = np.abs(carried.stress(0.0, 0.0, z) - direct.stress(0.0, 0.0, z))
     assert (gap <= carried.stress_uncertainty(0.0, 0.0, z)).all()
@@ -169,11 +130,10 @@ def test_incompressible_solid_is_reached_by_extrapolation():
 
 
 def test_rigid_base_is_reached_by_extrapolation():
-    quick = semianalytic
     rigid = PrescribedLoad(1e6, 0.1, ((1e9, 0.3, 0.1),), (1e15, 0.3))
-    carried, direct = extrapolated(rigid, quick), quick(rigid)
+    carried, direct = extrapolated(rigid, semianalytic), semianalytic(rigid)
     spread = carried.uncertainty.approach
     assert abs(carried.approach - direct.approach) <= spread <= 1e-3 * direct.approach
     # A base of 1e4 alone is further off by orders than the line through two of them.
-    alone = quick(replace(rigid, substrate=(1e13, 0.3)))
+    alone = semianalytic(replace(rigid, substrate=(1e13, 0.3)))
     assert abs(alone.approach - direct.approach) > 100 * abs(carried.approach - direct.approach)

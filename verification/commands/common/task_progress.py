@@ -84,7 +84,7 @@ def solve(
         def finished(name: str, result: T) -> None:
             at_work.remove(name)
             bar.update(task, advance=1, description=", ".join(at_work) or "report")
-            if not silent and isinstance(result, CaseResult):
+            if not silent and isinstance(result, CaseResult) and result.verdicts:
                 colour = STYLE[result.outcome]
                 line = f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s"
                 console.print(line, highlight=False)

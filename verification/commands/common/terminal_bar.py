@@ -15,16 +15,21 @@ from rich.table import Column
 from rich.text import Text
 
 from verification.commands.common.command_error import no_result
-from verification.running.provenance import missing_libraries
 
 NARROW = 60  # columns
+# On Debian and Ubuntu: what the gmsh wheel opens and pip cannot bring.
+GMSH_REMEDY = (
+    "apt-get install libglu1-mesa libgl1 libxrender1 libxcursor1 libxfixes3 libxft2 libxinerama1 "
+    "libfontconfig1 libgomp1"
+)
 
 
 def require_gmsh() -> None:
     """Raises CommandError with the packages to install where gmsh cannot be loaded."""
-    if lacking := missing_libraries():
-        install = f"apt-get install {' '.join(lacking)}"
-        raise no_result(f"gmsh lacks system libraries here; install them with: {install}")
+    try:
+        import gmsh  # noqa: F401
+    except OSError:
+        raise no_result(f"gmsh lacks system libraries here; install them with: {GMSH_REMEDY}") from None
 
 
 class _Description(ProgressColumn):

@@ -147,15 +147,6 @@ def _list(wanted: Sequence["Fault"], as_json: bool) -> None:
 
 
 def _print(found: "Record", page: Path) -> None:
-    from verification.credibility.faults.first_notice import (
-        COUNTED,
-        Noticed,
-        kinds,
-        method_score,
-        noticed,
-        of_method,
-        unused,
-    )
     from verification.evidence.fault_record import GROUPS, Catch
 
     shown = [catch for catch in Catch if any(row.catch is catch for row in found.rows)]
@@ -173,10 +164,6 @@ def _print(found: "Record", page: Path) -> None:
             f"{row.reason}; {row.remedy} would catch it" if row.reason else row.failure or "not explained"
         )
         print_out(f"[bold red]{row.catch}[/] {row.name}: {escape(row.description)}. {escape(reason)}")
-    for row in of_method(found):
-        if noticed(row) not in (*COUNTED, Noticed.EQUIVALENT):
-            what = "no run executes it" if unused(row) else f"first noticed by: {noticed(row)}"
-            print_out(f"[yellow]{row.name}[/] {escape(row.description)}: {what}")
     for row in found.idle:
         print_out(f"[bold red]changes nothing[/] {row.name}")
     for row in found.alarms:
@@ -185,9 +172,6 @@ def _print(found: "Record", page: Path) -> None:
         print_out(f"[bold red]fails without a fault[/] {escape(failure)}")
     text = f"{found.caught} of {len(found.tried)} faults caught ({100 * found.share:.0f} %), "
     text += f"{found.as_predicted} by the predicted check"
-    if of_method(found):
-        seen, judged = method_score(found)
-        text += f"; in the method {seen} of {judged} by comparison, invariant or study (first {kinds(found)})"
     if found.controls:
         text += f"; {len(found.alarms)} alarms in {len(found.controls)} negative controls"
     print_out(f"{text}; {found.seconds:.0f} s; matrix: {escape(str(page))}")

@@ -11,7 +11,6 @@ is not answered. A column ``U QUANTITY`` may be added; otherwise no uncertainty 
 import csv
 import io
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +22,8 @@ from verification.running.checked_files import StoreError, read_bounded, write_a
 
 MOST_BYTES = 20_000_000
 HEAD = ("number", "line", "x", "y", "z", "layer")
+# By "value" or "uncertainty", line (or "contact"), quantity: the text of each cell with its place.
+Cells = dict[tuple[str, str, str], list[tuple[str, str]]]
 
 
 def place_of(guest: Guest, case: Subject, question: Question) -> Path:
@@ -39,11 +40,11 @@ def pack(guest: Guest, case: Subject, question: Question) -> Path:
     rows = [[name, _unit(unit_of(name), units), "", ""] for name in question.contact]
     quantities = list(dict.fromkeys(q for line in question.lines for q in line.quantities))
     points: list[list[Any]] = [[*HEAD, *quantities]]
-    for number, (line, i) in enumerate(_points(question)):
+    for line in question.lines:
         # A cell of a quantity that is not wanted on this line is no cell to fill in.
         cells = ["" if q in line.quantities else "-" for q in quantities]
-        at = [repr(v) for v in (line.x[i], line.y[i], line.z[i])]
-        points.append([number, line.line, *at, line.layer[i], *cells])
+        for x, y, z, layer in zip(line.x, line.y, line.z, line.layer, strict=True):
+            points.append([len(points) - 1, line.line, repr(x), repr(y), repr(z), layer, *cells])
     texts = {
         "problem.json": json.dumps(question.model_dump() | {"units": units.model_dump()}, indent=1) + "\n",
         "contact.csv": _written([["quantity", "unit", "value", "uncertainty"], *rows]),
@@ -58,16 +59,19 @@ def pack(guest: Guest, case: Subject, question: Question) -> Path:
 def read_answer(guest: Guest, case: Subject, question: Question) -> Answer:
     """The answer that was filled in. Raises ProtocolError naming file, row and column."""
     folder = place_of(guest, case, question)
-    values: dict[str, dict[str, Any]] = {}
-    uncertainty: dict[str, dict[str, Any]] = {}
-    for number, row in enumerate(_rows(folder / "contact.csv"), start=2):
-        where, name = f"{folder / 'contact.csv'}: row {number}", row.get("quantity") or ""
-        if row.get("value") and name in question.contact:
-            values.setdefault("contact", {})[name] = _number(row["value"], where)
-            if row.get("uncertainty"):
-                uncertainty.setdefault("contact", {})[name] = _number(row["uncertainty"], where)
+    cells: Cells = {}
+    for where, row in _rows(folder / "contact.csv"):
+        if row.get("quantity") in question.contact:
+            for column in ("value", "uncertainty"):
+                cells[column, "contact", row["quantity"]] = [(where, row.get(column) or "")]
     if question.lines:
-        _read_points(folder / "points.csv", question, values, uncertainty)
+        cells |= _point_cells(folder / "points.csv", question)
+    found: dict[str, dict[str, dict[str, Any]]] = {"value": {}, "uncertainty": {}}
+    for (column, line, name), texts in cells.items():
+        if any(text.strip() for _, text in texts):
+            numbers = [_number(text, where) for where, text in texts]
+            found[column].setdefault(line, {})[name] = numbers[0] if line == "contact" else numbers
+    values, uncertainty = found.values()
     if not values:
         return Answer(protocol=VERSION, id=question.id, unsupported=f"nothing is filled in in {folder.name}")
     answer = Answer(protocol=VERSION, id=question.id, values=values, uncertainty=uncertainty)
@@ -75,54 +79,42 @@ def read_answer(guest: Guest, case: Subject, question: Question) -> Answer:
     return answer
 
 
-def _read_points(
-    path: Path, question: Question, values: dict[str, dict[str, Any]], uncertainty: dict[str, dict[str, Any]]
-) -> None:
+def _point_cells(path: Path, question: Question) -> Cells:
     rows: dict[str, tuple[str, dict[str, Any]]] = {}
-    for number, row in enumerate(_rows(path), start=2):
+    for where, row in _rows(path):
         key = (row.get("number") or "").strip()
         if key in rows:
-            raise ProtocolError(f"{path}: row {number}: number {key[:20]!r} occurs twice")
-        rows[key] = (f"{path}: row {number}", row)
-    points = list(_points(question))
-    if set(rows) != {str(i) for i in range(len(points))}:
-        raise ProtocolError(
-            f"{path}: {len(rows)} rows; numbers 0 to {len(points) - 1}, each once, are needed"
-        )
-    for prefix, found in (("", values), ("U ", uncertainty)):
-        for line in question.lines:
-            for q in line.quantities:
-                cells = [
-                    (rows[str(i)][0], rows[str(i)][1].get(prefix + q) or "")
-                    for i, (other, _) in enumerate(points)
-                    if other is line
-                ]
-                if any(text.strip() for _, text in cells):
-                    numbers = [_number(text, f"{where}, {prefix}{q}") for where, text in cells]
-                    found.setdefault(line.line, {})[q] = numbers
-
-
-def _points(question: Question) -> Iterator[tuple[Any, int]]:
-    """Each line of ``question`` with the number of each of its points, in the order of the file."""
+            raise ProtocolError(f"{where}: number {key[:20]!r} occurs twice")
+        rows[key] = where, row
+    count = sum(len(line.x) for line in question.lines)
+    if set(rows) != {str(i) for i in range(count)}:
+        raise ProtocolError(f"{path}: {len(rows)} rows; numbers 0 to {count - 1}, each once, are needed")
+    cells, first = {}, 0
     for line in question.lines:
-        for i in range(len(line.x)):
-            yield line, i
+        mine = [rows[str(first + i)] for i in range(len(line.x))]
+        first += len(line.x)
+        for name in line.quantities:
+            for column, head in (("value", name), ("uncertainty", f"U {name}")):
+                texts = [(f"{where}, {head}", row.get(head) or "") for where, row in mine]
+                cells[column, line.line, name] = texts
+    return cells
 
 
-def _rows(path: Path) -> list[dict[str, Any]]:
+def _rows(path: Path) -> list[tuple[str, dict[str, Any]]]:
+    """Each row of a CSV file below its head, with its place for messages."""
     try:
         text = read_bounded(path, MOST_BYTES).decode("utf-8-sig")
-    except (StoreError, UnicodeDecodeError) as error:
-        raise ProtocolError(
-            f"{error}" if isinstance(error, StoreError) else f"{path}: not UTF-8 text"
-        ) from None
-    # Spreadsheets of some languages separate by semicolons, with a decimal comma.
-    head = text.partition("\n")[0]
-    separator = ";" if head.count(";") > head.count(",") else ","
-    try:
-        return list(csv.DictReader(io.StringIO(text), delimiter=separator))
+        # Spreadsheets of some languages separate by semicolons, with a decimal comma.
+        head = text.partition("\n")[0]
+        separator = ";" if head.count(";") > head.count(",") else ","
+        rows = list(csv.DictReader(io.StringIO(text), delimiter=separator))
+    except StoreError as error:
+        raise ProtocolError(str(error)) from None
+    except UnicodeDecodeError:
+        raise ProtocolError(f"{path}: not UTF-8 text") from None
     except csv.Error as error:
         raise ProtocolError(f"{path}: not CSV ({error})") from None
+    return [(f"{path}: row {number}", row) for number, row in enumerate(rows, start=2)]
 
 
 def _number(text: str, where: str) -> float:

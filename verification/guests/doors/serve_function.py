@@ -17,7 +17,6 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from importlib import import_module
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -50,48 +49,39 @@ class NotGiven(ValueError):
     """A result that holds nothing that was asked for."""
 
 
+def _given(result: Any, name: str) -> Any:
+    """What a mapping or an object has of this ``name``; None where it has nothing."""
+    return result.get(name) if isinstance(result, Mapping) else getattr(result, name, None)
+
+
 class Face:
-    """A guest's result with the attributes of a ``Solution``, each if the guest has it."""
+    """A guest's result with the attributes of a ``Solution``, each if the guest has it.
+
+    It states no uncertainty, which is used for fields only where it is complete.
+    """
+
+    uncertainty = None
 
     def __init__(self, result: Any) -> None:
-        self._get: Callable[[str], Any] = (
-            result.get if isinstance(result, Mapping) else lambda name: getattr(result, name, None)
-        )
-        self.uncertainty = self._get("uncertainty")
-        if isinstance(self.uncertainty, Mapping):
-            self.uncertainty = SimpleNamespace(**self.uncertainty)
-
-    def has(self, name: str) -> bool:
-        return self._get(name) is not None
+        self._result = result
 
     def __getattr__(self, name: str) -> Any:
-        value = self._get(name)
+        value = _given(self._result, name)
         if value is None:
             raise AttributeError(name)
         return {"pressure": self._pressure, "stress": self._stress}.get(name, value)
 
-    def number(self, name: str) -> float:
-        return float(np.asarray(self._get(name), dtype=float).reshape(()))
-
     def _pressure(self, x: Any, y: Any = 0.0) -> Array:
         """p [Pa] at points of the surface, (n,)."""
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        return _shaped("pressure", self._get("pressure")(x, y), x.shape)
+        return _shaped("pressure", _given(self._result, "pressure")(x, y), x.shape)
 
     def _stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
         """sigma[i, j, ...] [Pa] at points, (3, 3) + points."""
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
-        function = self._get("stress")
+        function = _given(self._result, "stress")
         named = {"layer": layer} if "layer" in inspect.signature(function).parameters else {}
         return _shaped("stress", function(x, y, z, **named), (3, 3, *x.shape))
-
-
-class _Plain(Face):
-    """A face whose uncertainty is not complete, and so not used for fields."""
-
-    def __init__(self, result: Any) -> None:
-        super().__init__(result)
-        self.uncertainty = None
 
 
 def values_of(result: Any, problem: Load, question: Question) -> tuple[Numbers, Numbers]:
@@ -103,21 +93,21 @@ def values_of(result: Any, problem: Load, question: Question) -> tuple[Numbers, 
     whole = all(
         hasattr(result, name) for name in ("uncertainty", "pressure_uncertainty", "stress_uncertainty")
     )
-    face: Any = result if whole else _Plain(result)
-    stated = Face(result).uncertainty
+    face: Any = result if whole else Face(result)
+    stated = _given(result, "uncertainty")
     values: Numbers = {"contact": {}}
     uncertainty: Numbers = {"contact": {}}
     for name in question.contact:
         record = QUANTITIES[name]
         if record.derived is not None or (whole and record.kind == "slope"):
             with suppress(AttributeError):  # a number of which it follows is not given
-                values["contact"][name] = record.value(result if whole else face, problem)
+                values["contact"][name] = record.value(face, problem)
                 if whole and (own := record.uncertainty(result, problem)) is not None:
                     uncertainty["contact"][name] = own
-        elif Face(result).has(name):
-            values["contact"][name] = Face(result).number(name)
-            if getattr(stated, name, None) is not None:
-                uncertainty["contact"][name] = float(getattr(stated, name))
+        elif (value := _given(result, name)) is not None:
+            values["contact"][name] = float(np.asarray(value, dtype=float).reshape(()))
+            if (own := _given(stated, name)) is not None:
+                uncertainty["contact"][name] = float(own)
     missing = set(question.contact) - set(values["contact"])
     if (
         isinstance(problem, CoatedContact)
@@ -125,7 +115,9 @@ def values_of(result: Any, problem: Load, question: Question) -> tuple[Numbers, 
         and missing & set(PEAKS)
         and _able(face, "stress", "contact_radius")
     ):
-        values["contact"] |= dict(zip(PEAKS, _largest_tension(face, problem), strict=True))
+        search = Search(face, problem)
+        found = search.largest(face.stress(search.x, 0.0, 0.0, layer=0)[0, 0], None)
+        values["contact"] |= dict(zip(PEAKS, (found.value, found.place), strict=True))
     for asked in question.lines:
         for p in _sampled(result, problem, asked) if whole else _on_line(face, asked):
             one = p.line == "contact"
@@ -143,13 +135,6 @@ def values_of(result: Any, problem: Load, question: Question) -> tuple[Numbers, 
 
 def _able(face: Any, *names: str) -> bool:
     return all(getattr(face, name, None) is not None for name in names)
-
-
-def _largest_tension(face: Any, problem: CoatedContact) -> tuple[float, float]:
-    """Value and place of the largest tension of the surface."""
-    search = Search(face, problem)
-    found = search.largest(face.stress(search.x, 0.0, 0.0, layer=0)[0, 0], None)
-    return found.value, found.place
 
 
 def _sampled(solution: Any, problem: Load, asked: LineOfPoints) -> tuple[Profile, ...]:

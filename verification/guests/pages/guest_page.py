@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Sequence
+from itertools import zip_longest
 from math import log10
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 from markupsafe import Markup
 
 from verification.guests.case_exam import profiles_of
-from verification.guests.exam_subjects import reference_of
+from verification.guests.exam_subjects import exact_profile, exact_radius, reference_of
 from verification.guests.examination import Examined
 from verification.guests.slip_diagnosis import UNEXPLAINED, slips
 from verification.judging.verdict import Claim, Outcome, Verdict
@@ -31,6 +32,7 @@ from verification.page.page_parts import (
 from verification.page.source_labels import OUTCOMES, row_css
 from verification.page.svg_curves import Curve, Difference, draw
 from verification.page.svg_loglog import DASHES, DOTS, MIXED, Plot, Trail, panels
+from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import CaseResult, RunInfo
 from verification.sources.source_record import Style
@@ -132,7 +134,7 @@ def digits(difference: float | None) -> str:
 def _quantities(found: Examined) -> Section:
     """A row for each quantity, the worst first, with its likely reason: what to look at."""
     reasons = _reasons(found)
-    rows: list[tuple[tuple[int, float], Row]] = []
+    rows: list[tuple[int, float, Row]] = []
     for quantity in dict.fromkeys(claim.quantity for _, claim, _ in found.comparisons):
         verdicts = [one for one in found.comparisons if one[1].quantity == quantity]
         count = Counter(v.outcome for _, _, v in verdicts)
@@ -145,42 +147,36 @@ def _quantities(found: Examined) -> Section:
             gap, result, claim = max(gaps, key=lambda item: item[0])
             where = result.title + ("" if claim.line == "contact" else f", {claim.line}")
         answered = len(verdicts) - count[Outcome.UNSUPPORTED]
-        why = [message for message, places in reasons if any(q == quantity for _, q, _ in places)]
+        why = [message for message, quantities in reasons if quantity in quantities]
         why = [message for message in why if not message.startswith(UNEXPLAINED)] or why[:1]
-        rows.append(
-            (
-                (WORST_FIRST.index(worst), -(gap or 0.0)),
-                row(
-                    Cell(quantity, note=QUANTITIES[quantity].meaning),
-                    *([words("; ".join(why[:MOST_REASONS]))] if reasons else []),
-                    Cell(digits(gap), gap),
-                    outcome_cell(worst),
-                    Cell(f"{count[Outcome.AGREES]} of {answered}", count[Outcome.AGREES] / answered),
-                    number(gap),
-                    words(where),
-                    css=row_css(worst),
-                ),
-            )
+        cells = (
+            Cell(quantity, note=QUANTITIES[quantity].meaning),
+            *([words("; ".join(why[:MOST_REASONS]))] if reasons else []),
+            Cell(digits(gap), gap),
+            outcome_cell(worst),
+            Cell(f"{count[Outcome.AGREES]} of {answered}", count[Outcome.AGREES] / answered),
+            number(gap),
+            words(where),
         )
+        rows.append((WORST_FIRST.index(worst), -(gap or 0.0), row(*cells, css=row_css(worst))))
+    rows.sort(key=lambda item: item[:2])
+    heads = ["quantity", *(["likely reason"] if reasons else [])]
+    heads += ["digits", "worst", "agree", "largest difference", "where"]
     table = Table(
         "The largest difference over all cases and lines with the digits that it leaves; relative to the "
         "value (p0, a, approach), else to the smaller of p_h and p0.",
-        [
-            "quantity",
-            *(["likely reason"] if reasons else []),
-            *("digits", "worst", "agree", "largest difference", "where"),
-        ],
-        [line for _, line in sorted(rows, key=lambda item: item[0])],
+        heads,
+        [line for _, _, line in rows],
     )
     return Section("quantities", "Which quantity is wrong?", [Part("", [table])])
 
 
-def _reasons(found: Examined) -> list[tuple[str, list[tuple[CaseResult, str, str]]]]:
-    """Each likely slip with its cases, quantities and lines; unexplained differences last."""
-    by: dict[str, list[tuple[CaseResult, str, str]]] = {}
+def _reasons(found: Examined) -> list[tuple[str, list[str]]]:
+    """Each likely slip with the quantity of every place; unexplained differences last."""
+    by: dict[str, list[str]] = {}
     for result in found.results:
         for slip in slips(result, found.guest.name):
-            by.setdefault(slip.message, []).extend((result, *place) for place in slip.places)
+            by.setdefault(slip.message, []).extend(quantity for quantity, _ in slip.places)
     return sorted(by.items(), key=lambda item: (item[0].startswith(UNEXPLAINED), -len(item[1])))
 
 
@@ -191,30 +187,19 @@ def _cases(found: Examined) -> Section:
     for result in found.results:
         if all(v.outcome is Outcome.UNSUPPORTED for _, v in result.verdicts):
             continue
-        mine = next((s for s in result.sources if s.source == found.guest.name), None)
+        mine = [s for s in result.sources if s.source == found.guest.name and s.seconds]
         cells = [_digits_cell([v for c, v in result.verdicts if c.quantity == name]) for name in names]
-        memory = None if mine is None else mine.diagnostics.get("memory")
-        taken = None if mine is None or not mine.seconds else mine.seconds
-        rows.append(
-            row(
-                result.title,
-                *cells,
-                Cell("–" if taken is None else seconds(taken), taken),
-                Cell("–" if memory is None else f"{memory / 1e6:.0f} MB", memory),
-            )
-        )
+        memory = mine[0].diagnostics.get("memory") if mine else None
+        taken = number(mine[0].seconds if mine else None, seconds)
+        rows.append(row(result.title, *cells, taken, number(memory and memory / 1e6, "{:.0f} MB".format)))
     table = Table(
         "Digits that agree with the exact reference, by case, with the worst verdict; time and peak memory "
         "at the finest level.",
         ["case", *names, "time", "memory"],
         rows,
     )
-    lead = (
-        f"{len(rows)} of {len(found.results)} cases; the others are not supported."
-        if len(rows) < len(found.results)
-        else ""
-    )
-    return Section("cases", "Cases", [Part(lead, [table])])
+    lead = f"{len(rows)} of {len(found.results)} cases; the others are not supported."
+    return Section("cases", "Cases", [Part(lead if len(rows) < len(found.results) else "", [table])])
 
 
 def _digits_cell(verdicts: Sequence[Verdict]) -> Cell:
@@ -234,15 +219,13 @@ def _failures(found: Examined) -> Section | None:
     failures = sorted({f"{r.title}: {s.failure}" for r in found.results for s in r.sources if s.failure})
     if not bad and not failures:
         return None
-    along = [item for item in bad if item[1].line != "contact"]
+    by: dict[str, list[tuple[CaseResult, Claim, Verdict]]] = {}
+    for one in bad:
+        if one[1].line != "contact":
+            by.setdefault(one[1].quantity, []).append(one)
     # Every quantity once before one is shown again.
-    seen: Counter[str] = Counter()
-    ranked = []
-    for item in along:
-        ranked.append((seen[item[1].quantity], item))
-        seen[item[1].quantity] += 1
-    ranked.sort(key=lambda one: one[0])
-    figures = [_figure(found.guest.name, *item) for _, item in ranked[:MOST_FIGURES]]
+    ranked = [one for turn in zip_longest(*by.values()) for one in turn if one is not None]
+    figures = [_figure(found.guest.name, *one) for one in ranked[:MOST_FIGURES]]
     parts = []
     if figures:
         legend = [(Markup('<span class="s-semi">—</span>'), "guest"), (Markup("<span>━</span>"), "exact")]
@@ -250,12 +233,8 @@ def _failures(found: Examined) -> Section | None:
             "Above the values of guest and exact reference over the scale, below their difference with its "
             "uncertainty on a logarithmic scale; a ring marks the point that decides, a dashed line the cap."
         )
-        parts.append(
-            Part(
-                "Values along the line: of each quantity the largest difference, then the others.",
-                gallery=Gallery(legend, figures, caption),
-            )
-        )
+        text = "Values along the line: of each quantity the largest difference, then the others."
+        parts.append(Part(text, gallery=Gallery(legend, figures, caption)))
     rows = [
         row(
             result.title,
@@ -278,9 +257,8 @@ def _failures(found: Examined) -> Section | None:
 
 def _ratio(guest: str, result: CaseResult, claim: Claim) -> str:
     """Least-squares factor between the guest and the exact values; 1 where only the pattern differs."""
-    mine, exact = (
-        result.profile_of.get((claim.quantity, claim.line, s)) for s in (guest, reference_of(result.problem))
-    )
+    mine = result.profile_of.get((claim.quantity, claim.line, guest))
+    exact = exact_profile(result, claim.quantity, claim.line)
     if mine is None or exact is None or not np.isfinite(mine.value).all() or not exact.value.any():
         return "–"
     return plain(float(mine.value @ exact.value / (exact.value @ exact.value)), 6)
@@ -290,26 +268,17 @@ def _figure(guest: str, result: CaseResult, claim: Claim, verdict: Verdict) -> P
     mine, exact = (
         result.profile_of[claim.quantity, claim.line, s] for s in (guest, reference_of(result.problem))
     )
-    a = float(result.profile_of["contact_radius", "contact", reference_of(result.problem)].value[0])
+    a = exact_radius(result)
     top = float(np.abs(exact.value).max()) or 1.0
     x = exact.position / a
     difference = np.abs(mine.value - exact.value) / top
     uncertainty = None if mine.uncertainty is None else mine.uncertainty / top
-    coordinate = "z" if claim.line == "axis" else "s" if claim.line.startswith("oblique") else "x"
+    worst = None if verdict.worst is None else verdict.worst / a
     figure = draw(
         [Curve(x, exact.value / top, EXACT), Curve(x, mine.value / top, GUEST)],
-        [
-            Difference(
-                x,
-                difference,
-                uncertainty,
-                GUEST,
-                None if verdict.worst is None else verdict.worst / a,
-                verdict.outcome is Outcome.INCONCLUSIVE,
-            )
-        ],
+        [Difference(x, difference, uncertainty, GUEST, worst, verdict.outcome is Outcome.INCONCLUSIVE)],
         label=f"{claim.quantity} on {claim.line} of {result.title}",
-        coordinate=f"{coordinate} / a",
+        coordinate=f"{coordinate_of(claim.line)} / a",
         cap=claim.cap,
         unjudged=[(1 - claim.edge, 1 + claim.edge)] if claim.edge else (),
     )
@@ -322,17 +291,16 @@ def _convergence(found: Examined) -> Section | None:
     if not guest.levels:
         return None
     plots, rows = [], []
-    errors = {result.name: _errors(found, result) for result in found.results if result.name in found.replies}
-    quantities = dict.fromkeys(name for by in errors.values() for name in by)
+    errors = [(one.title, _errors(found, one)) for one in found.results if one.name in found.replies]
+    quantities = dict.fromkeys(name for _, by in errors for name in by)
     for quantity in quantities:
         trails = []
-        for n, (name, by) in enumerate(errors.items()):
+        for n, (title, by) in enumerate(errors):
             if quantity not in by:
                 continue
             style = Style(OWN[n % 2], DASHED[n // 2 % 4])
             order = _order(guest.levels, by[quantity])
             trails.append(Trail(guest.levels, by[quantity], style, "" if order is None else f"{order:.1f}"))
-            title = next(r.title for r in found.results if r.name == name)
             rows.append(row(title, quantity, *(number(e) for e in by[quantity]), number(order, plain)))
         label = f"error of {quantity} over {guest.parameter}"
         plots.append(Plot(quantity, label, "error, order at the end", guest.parameter, guest.levels, trails))
@@ -346,15 +314,11 @@ def _convergence(found: Examined) -> Section | None:
 
 def _errors(found: Examined, result: CaseResult) -> dict[str, tuple[float, ...]]:
     """Largest error of each quantity at each level over its scale; of a line outside the zone left out."""
-    guest, exact = found.guest, result.profile_of
-    if ("contact_radius", "contact", reference_of(result.problem)) not in exact:
-        return {}
-    a = float(exact["contact_radius", "contact", reference_of(result.problem)].value[0])
-    levels = [profiles_of(reply.answer, result, guest) for reply in found.replies[result.name]]
+    guest, exact, a = found.guest, result.profile_of, exact_radius(result)
     errors: dict[str, list[float]] = {}
-    for profiles in levels:
+    for reply in found.replies[result.name]:
         largest: dict[str, float] = {}
-        for p in profiles:
+        for p in profiles_of(reply.answer, result, guest):
             true = exact[p.quantity, p.line, reference_of(result.problem)]
             judged = np.abs(np.abs(true.position) - a) >= guest.edge * a
             scale = float(np.abs(true.value).max())

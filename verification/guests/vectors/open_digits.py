@@ -5,8 +5,7 @@ import gzip
 import hashlib
 import io
 import json
-from collections.abc import Iterator, Sequence
-from itertools import groupby
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -72,29 +71,3 @@ def texts(content: dict[str, Any]) -> dict[str, str]:
     }
     sums = [f"{hashlib.sha256(text.encode()).hexdigest()}  {name}" for name, text in files.items()]
     return files | {"SHA256SUMS": "\n".join(sums) + "\n"}
-
-
-def value_count(content: dict[str, Any]) -> int:
-    """How many values the data set holds."""
-    return sum(1 for v in content["problems"] for _ in _values(v))
-
-
-def uncertain(content: dict[str, Any]) -> Iterator[float]:
-    """The uncertainty of every value: of a number over itself, of a profile over its largest magnitude."""
-    for v in content["problems"]:
-        yield from (U / abs(value) for value, U in v["contact"].values())
-        for _, found in groupby(sorted(_fields(v)), key=lambda item: item[0]):
-            rows = list(found)
-            scale = max(abs(value) for _, value, _ in rows)
-            yield from (U / scale if scale else 0.0 for _, _, U in rows)
-
-
-def _fields(v: dict[str, Any]) -> Iterator[tuple[str, float, float]]:
-    for points in v["points"]:
-        for q, found in points["values"].items():
-            yield from ((q, value, U) for value, U in zip(found, points["uncertainty"][q], strict=True))
-
-
-def _values(v: dict[str, Any]) -> Iterator[float]:
-    yield from (value for value, _ in v["contact"].values())
-    yield from (value for _, value, _ in _fields(v))

@@ -28,7 +28,6 @@ from typing import BinaryIO, NoReturn
 
 from verification.running.checked_files import StoreError
 
-OURS = ("verification", "semianalytic", "fem_reference")
 UNWRITABLE = 74  # exit code of a process that could not write its result, EX_IOERR of sysexits.h
 
 
@@ -41,7 +40,8 @@ def main() -> None:
     _first_candidate_when_memory_ends()
     for line in requests:
         for module in json.loads(line)["ahead"]:
-            _import_once(module)
+            with suppress(Exception):  # one that fails is left to the child
+                import_module(module)
         with warnings.catch_warnings():
             # The only other threads are idle ones of BLAS, which ends them before a fork.
             warnings.simplefilter("ignore", DeprecationWarning)
@@ -54,13 +54,6 @@ def main() -> None:
         with suppress(OSError):
             os.killpg(child, signal.SIGKILL)  # whatever it started
         _reply(replies, f"ended {child} {code}")
-
-
-def _import_once(module: str) -> None:
-    """Import ``module`` before the fork; one of somebody else, or one that fails, is left to the child."""
-    if module.partition(".")[0] in OURS:
-        with suppress(Exception):
-            import_module(module)
 
 
 def _serve(line: bytes, requests: BinaryIO, replies: int) -> NoReturn:
@@ -86,13 +79,17 @@ def _run(work: str) -> int:
     """Exit code of the pickled ``work``; an error becomes one line on standard error."""
     try:
         pickle.loads(base64.b64decode(work))()
-    except StoreError as error:
-        return _failed(UNWRITABLE, str(error))
-    except MemoryError as error:
-        return _failed(1, f"out of memory ({_line(error)}); run fewer --jobs or coarsen the case")
+        return 0
     except Exception as error:
-        return _failed(1, f"{type(error).__name__}: {_line(error)}")
-    return 0
+        code, message = 1, " ".join(str(error).split())[:500] or "no message"
+        if isinstance(error, StoreError):
+            code = UNWRITABLE
+        elif isinstance(error, MemoryError):
+            message = f"out of memory ({message}); run fewer --jobs or coarsen the case"
+        else:
+            message = f"{type(error).__name__}: {message}"
+        sys.stderr.write(message + "\n")
+        return code
 
 
 def _end_with_parent(requests: int) -> None:
@@ -114,15 +111,6 @@ def _reply(replies: int, text: str) -> None:
     # A parent that is gone reads nothing; standard input ends next.
     with suppress(BrokenPipeError):
         os.write(replies, f"{text}\n".encode())
-
-
-def _line(error: BaseException) -> str:
-    return " ".join(str(error).split())[:500] or "no message"
-
-
-def _failed(code: int, message: str) -> int:
-    sys.stderr.write(message + "\n")
-    return code
 
 
 if __name__ == "__main__":

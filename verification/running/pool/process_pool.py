@@ -1,7 +1,6 @@
 """A pool of processes: tasks side by side, each with a time limit."""
 
 import base64
-import io
 import json
 import os
 import pickle
@@ -12,8 +11,8 @@ import sys
 import tempfile
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import IO, Generic, TypeVar
 
@@ -32,7 +31,6 @@ MEMORY_VARIABLES = {
     "MALLOC_TRIM_THRESHOLD_": str(2**30),
     "MALLOC_TOP_PAD_": str(64 * 2**20),
 }
-POLL = 0.05  # s
 
 
 def run_tasks(
@@ -53,23 +51,24 @@ def run_tasks(
     threads = max(1, cores() // jobs)
     waiting = in_order(tasks)
     results: dict[int, T] = {}
-    with _ended([Slot[T](threads) for _ in range(min(jobs, len(waiting)))]) as slots:
+    slots = [Slot[T](threads) for _ in range(min(jobs, len(waiting)))]
+    try:
         _start_idle(slots, waiting, started)
         meanwhile()
         while len(results) < len(tasks):
-            wait_for(slots)
+            # Until one answers; each time limit is looked at every 0.05 s.
+            select.select([end for slot in slots if (end := slot.replies) is not None], [], [], 0.05)
             for slot in slots:
                 if (found := slot.poll(time_limit)) is not None:
                     number, name, result = found
                     results[number] = result
                     finished(name, result)
             _start_idle(slots, waiting, started)
+    finally:  # no process outlives the run, however it ends
+        for slot in slots:
+            slot.stop()
+            slot.errors.close()
     return [results[number] for number in range(len(tasks))]
-
-
-def wait_for(slots: "Sequence[Slot[T]]") -> None:
-    """Wait until a process of ``slots`` answers, ``POLL`` seconds at most."""
-    select.select([end for slot in slots if (end := slot.replies) is not None], [], [], POLL)
 
 
 def _start_idle(slots: "list[Slot[T]]", waiting: deque[Group[T]], started: Callable[[str], None]) -> None:
@@ -88,7 +87,7 @@ class Slot(Generic[T]):
         self.task: Task[T] | None = None
         self.number = -1
         self.process: subprocess.Popen[bytes] | None = None
-        self.errors: IO[bytes] = io.BytesIO()
+        self.errors = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the slot
 
     @property
     def replies(self) -> int | None:
@@ -118,8 +117,6 @@ class Slot(Generic[T]):
         return self.task
 
     def _launch(self) -> subprocess.Popen[bytes]:
-        self.errors.close()
-        self.errors = tempfile.TemporaryFile()  # noqa: SIM115 - lives as long as the process
         self.process = subprocess.Popen(
             [sys.executable, "-m", "verification.running.pool.fork_guard"],
             stdin=subprocess.PIPE,
@@ -193,25 +190,10 @@ class Slot(Generic[T]):
         with self.process:  # closes its pipes, waits
             self.process = None
 
-    def close(self) -> None:
-        """As ``stop``, for good."""
-        self.stop()
-        self.errors.close()
-
 
 def _pipe(end: IO[bytes] | None) -> IO[bytes]:
     assert end is not None
     return end
-
-
-@contextmanager
-def _ended(slots: list[Slot[T]]) -> Iterator[list[Slot[T]]]:
-    """No process outlives the run, however it ends."""
-    try:
-        yield slots
-    finally:
-        for slot in slots:
-            slot.close()
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
