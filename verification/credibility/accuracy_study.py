@@ -73,12 +73,12 @@ def measure() -> AccuracyStudy:
     begin = time.perf_counter()
     failures: list[str] = []
 
-    def attempt(part: str, compute: Callable[[], T], otherwise: T) -> T:
+    def attempt(part: str, compute: Callable[[], tuple[T, ...]]) -> tuple[T, ...]:
         try:
             return compute()
         except Exception as error:  # a message of the report, not a traceback
             failures.append(f"{part}: {failure_message(error)}")
-            return otherwise
+            return ()
 
     available = solvers(COATED)
     grid = partial(refined_grid, solve=available["semianalytic"])
@@ -93,27 +93,18 @@ def measure() -> AccuracyStudy:
         *(mesh(order) for order in (2, 3, 4)),
     )
     failures += [f"{r.method}, {r.solid}, {r.setting}, {r.failure}" for r in refinements if r.failure]
-    conversions: tuple[ConversionError, ...] = attempt(
-        "conversions of the influence coefficients", lambda: conversion_errors(COATED), ()
-    )
-    discs: tuple[ExactError, ...] = attempt("discs", lambda: discs_of(), ())
-    ellipses: tuple[ExactError, ...] = attempt("ellipses", lambda: tuple(turned_ellipse(BARE)), ())
+    conversions = attempt("conversions of the influence coefficients", lambda: conversion_errors(COATED))
+    discs = attempt("discs", lambda: discs_of())
+    ellipses = attempt("ellipses", lambda: tuple(turned_ellipse(BARE)))
     seconds = time.perf_counter() - begin
     return AccuracyStudy(
-        refinements,
-        conversions,
-        tuple(failures),
-        seconds,
-        commit(),
-        versions(),
-        discs,
-        ellipses,
+        refinements, conversions, tuple(failures), seconds, commit(), versions(), discs, ellipses
     )
 
 
-def discs_of(patches: int = 129) -> tuple[ExactError, ...]:
+def discs_of() -> tuple[ExactError, ...]:
     """Given pressures on both solids, Hertz's sliding on the coated one; DC-FFT; one patch of thin films."""
-    found = disc_errors(COATED, "coated", FRICTION, patches) + disc_errors(BARE, "uncoated", 0.0, patches)
+    found = disc_errors(COATED, "coated", FRICTION) + disc_errors(BARE, "uncoated", 0.0)
     return (*found, *convolution_errors(COATED, "coated"), *film_errors(COATED))
 
 
@@ -131,7 +122,7 @@ def quick() -> tuple[Invariant, ...]:
         ),
         lambda: verdicts((), turned_ellipse(BARE), ()),
     )
-    found: tuple[Invariant, ...] = ()
+    found: list[Invariant] = []
     for part in parts:
         try:
             found += part()
@@ -139,7 +130,7 @@ def quick() -> tuple[Invariant, ...]:
             found += verdicts((), (), (), (f"discs and ellipses: {failure_message(error)}",))
         if any(row.outcome is Outcome.DISAGREES for row in found):
             break
-    return found
+    return tuple(found)
 
 
 def failed(reason: str, seconds: float) -> AccuracyStudy:
@@ -147,18 +138,16 @@ def failed(reason: str, seconds: float) -> AccuracyStudy:
     return AccuracyStudy((), (), (reason,), seconds, commit(), versions())
 
 
-def stored(
-    folder: Path, source: Callable[[], str | None] = commit, packages: Callable[[], dict[str, str]] = versions
-) -> AccuracyStudy | None:
+def stored(folder: Path) -> AccuracyStudy | None:
     """The earlier study where it has no failures and is of this commit and these versions, or None.
 
     The study of a tree that was changed since its commit (marked "+") is not used: the tree may have changed
     since. Raises StoreError, naming the file, where the study is damaged.
     """
-    found, now = _FILE.read(folder), source()
+    found, now = _FILE.read(folder), commit()
     if found is None or found.failures or (now or "").endswith("+"):
         return None
-    return found if (found.commit, found.versions) == (now, packages()) else None
+    return found if (found.commit, found.versions) == (now, versions()) else None
 
 
 def task(folder: Path) -> Task[AccuracyStudy]:

@@ -13,7 +13,7 @@ from synthetic_study import study
 from verification.commands import run as command
 from verification.commands.common import named_files, task_progress
 from verification.credibility import accuracy_study as accuracy_study
-from verification.credibility.accuracy_study import BARE, COATED, AccuracyStudy, from_json, to_json
+from verification.credibility.accuracy_study import BARE, COATED, from_json, to_json
 from verification.credibility.refinement_studies import (
     QUANTITIES,
     order_of,
@@ -139,20 +139,21 @@ def test_study_survives_strict_json_to_the_last_bit():
         from_json(json.loads(text) | {"schema": "coatcheck-accuracy/0"})
 
 
-def kept(folder, found: AccuracyStudy, commit="a28aa40c1d2e", versions=None) -> bool:
-    write_checked(accuracy_study.path_in(folder), to_json(found))
-    packages = {"numpy": "2.4.0"} if versions is None else versions
-    return accuracy_study.stored(folder, lambda: commit, lambda: packages) == found
-
-
-def test_study_is_kept_for_the_very_same_code_only(tmp_path):
+def test_study_is_kept_for_the_very_same_code_only(tmp_path, monkeypatch):
     whole = study()
-    assert kept(tmp_path, whole)
-    assert not kept(tmp_path, whole, commit="b28aa40c1d2e")
-    assert not kept(tmp_path, whole, versions={"numpy": "2.5.0"})
+
+    def kept(found=whole, commit=whole.commit, versions=whole.versions):
+        write_checked(accuracy_study.path_in(tmp_path), to_json(found))
+        monkeypatch.setattr(accuracy_study, "commit", lambda: commit)
+        monkeypatch.setattr(accuracy_study, "versions", lambda: versions)
+        return accuracy_study.stored(tmp_path) == found
+
+    assert kept()
+    assert not kept(commit="b28aa40c1d2e")
+    assert not kept(versions={"numpy": "2.5.0"})
     # A changed tree has one mark whatever was changed.
-    assert not kept(tmp_path, replace(whole, commit="a28aa40c1d2e+"), commit="a28aa40c1d2e+")
-    assert not kept(tmp_path, study("order 3: no mesh"))
+    assert not kept(replace(whole, commit="a28aa40c1d2e+"), commit="a28aa40c1d2e+")
+    assert not kept(study("order 3: no mesh"))
     path = accuracy_study.path_in(tmp_path)
     path.write_bytes(path.read_bytes()[:-100])
     with pytest.raises(StoreError, match=r"accuracy\.json: "):
