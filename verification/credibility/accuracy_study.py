@@ -115,19 +115,19 @@ def quick() -> tuple[Invariant, ...]:
     """
     grid = partial(refined_grid, solve=solvers(COATED)["semianalytic"])
     parts: tuple[Callable[[], tuple[Invariant, ...]], ...] = (
-        lambda: verdicts((), discs_of(), ()),
-        lambda: verdicts((grid(COATED, (129,), solid="coated", setting=CORRECTED),), (), ()),
+        lambda: verdicts(errors=discs_of()),
+        lambda: verdicts([grid(COATED, (129,), solid="coated", setting=CORRECTED)]),
         lambda: verdicts(
-            (grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False),), (), ()
+            [grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False)]
         ),
-        lambda: verdicts((), turned_ellipse(BARE), ()),
+        lambda: verdicts(errors=turned_ellipse(BARE)),
     )
     found: list[Invariant] = []
     for part in parts:
         try:
             found += part()
         except Exception as error:
-            found += verdicts((), (), (), (f"discs and ellipses: {failure_message(error)}",))
+            found += verdicts(failures=[f"discs and ellipses: {failure_message(error)}"])
         if any(row.outcome is Outcome.DISAGREES for row in found):
             break
     return tuple(found)

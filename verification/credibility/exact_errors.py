@@ -34,7 +34,6 @@ INSIDE = np.array([-0.8, -0.55, -0.3, 0.0, 0.21, 0.47, 0.7])  # of the radius, o
 QUARTER = ((0.0, 0.3, 0.75, 0.2, 0.5, 0.6, 0.9, 1.0), (0.0, 0.0, 0.0, 0.7, 0.5, 0.3, 0.9, 1.0))
 SIDE = 0.07  # of a patch, over a_h
 FILMS = {"film of one patch": 1.0, "film of five patches": 5.0}  # thickness over that
-TURNED = "ellipse 2 : 1, turned"
 ANGLE = 0.4  # of the long axis from x
 BETWEEN = 0.4  # of a patch, by which the turned ellipse lies beside a patch centre
 WIDE = 1.15  # half-width of the grid over the long semi-axis
@@ -196,7 +195,6 @@ def turned_ellipse(problem: CoatedContact) -> list[ExactError]:
     a, b = 2**0.5 * problem.a_h, problem.a_h / 2**0.5
     exact = HertzEllipse(a, b, problem.p_h, problem.E_star)
     (A, B), c, s = exact.curvatures, np.cos(ANGLE), np.sin(ANGLE)
-
     aside = BETWEEN * 2 * WIDE * a / PATCHES
 
     def height(x: Any, y: Any) -> Any:
@@ -220,7 +218,7 @@ def turned_ellipse(problem: CoatedContact) -> list[ExactError]:
             "approach": one.approach / exact.approach - 1 if approach is None else 0.0,
             "load": one.diagnostics.load / exact.load - 1,
         }
-        what = TURNED if approach is None else f"{TURNED}, given approach"
+        what = "ellipse 2 : 1, turned" + ("" if approach is None else ", given approach")
         found += [ExactError(what, "uncoated", name, abs(error)) for name, error in errors.items()]
     return found
 

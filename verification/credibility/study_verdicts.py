@@ -26,8 +26,6 @@ from verification.judging.invariant_verdict import Invariant, absent, decide
 from verification.judging.invariants.influence_error import BOUND, ConversionError
 from verification.judging.outcome import Outcome
 
-__all__ = ["CORRECTED", "PLAIN", "STAIRCASE", "verdicts"]
-
 CORRECTED = "split conversion, corrected edge"
 # Patches alone: influence coefficients, DC-FFT, conjugate gradients against the exact solution.
 STAIRCASE = "split conversion, staircase edge"
@@ -47,10 +45,9 @@ class Limits:
     falls: dict[str, float]
 
 
-SECOND = {"p0": 2.0, "a": 2.0, "approach": 2.0, "pressure": 2.0, "stress": 2.0}
+SECOND = dict.fromkeys(("p0", "a", "approach", "pressure", "stress"), 2.0)
 STAIRS = SECOND | {"a": 1.0, "pressure": 1.0}
 FIXED = dict.fromkeys(SECOND, 0.0)
-OF_GRID = 257
 LIMITS = {
     CORRECTED: Limits(
         {"p0": 2e-6, "a": 1e-5, "approach": 2e-6, "pressure": 2e-5, "stress": 1e-5}, {"p0": 1.5}, SECOND
@@ -87,20 +84,19 @@ OTHERS = {
 
 
 def verdicts(
-    refinements: Iterable[Refinement],
-    discs: Iterable[ExactError],
-    conversions: Iterable[ConversionError],
+    refinements: Iterable[Refinement] = (),
+    errors: Iterable[ExactError] = (),
+    conversions: Iterable[ConversionError] = (),
     failures: Iterable[str] = (),
 ) -> tuple[Invariant, ...]:
     """A verdict on each part of the method: the error of its study is below its limit."""
     found: list[Invariant] = []
-    for one in refinements:
-        if one.method == SOURCE and one.setting in LIMITS:
-            found += _of_refinement(one, LIMITS[one.setting])
-    for disc in discs:
-        of_disc = disc.quantity in DISCS
-        name = f"{disc.solid}: {'disc, ' * of_disc}{disc.pressure}: {disc.quantity}"
-        found.append(_below(name, disc.error, (DISCS if of_disc else OTHERS)[disc.quantity]))
+    for study in refinements:
+        if study.method == SOURCE and study.setting in LIMITS:
+            found += _of_refinement(study, LIMITS[study.setting])
+    for one in errors:
+        name = f"{one.solid}: {'disc, ' * (one.quantity in DISCS)}{one.pressure}: {one.quantity}"
+        found.append(_below(name, one.error, (DISCS | OTHERS)[one.quantity]))
     for conversion in conversions:
         if conversion.conversion == "split":
             found.append(_below("coated: influence coefficients", conversion.largest, BOUND))
@@ -117,15 +113,13 @@ def _of_refinement(one: Refinement, limits: Limits) -> list[Invariant]:
     if one.failure or not one.levels:
         return [absent(name, SOURCE, one.failure or f"{name}: nothing was computed")]
     last = one.levels[-1]
-    coarser = OF_GRID / last.resolution if last.resolution else float("inf")
+    coarser = 257 / last.resolution
     found = [
         _below(f"{name}: {q}, {last.name}", last.errors[q], limit * coarser ** limits.falls[q])
         for q, limit in limits.error.items()
     ]
-    for q, least in limits.order.items():
+    for q, least in limits.order.items() if len(one.levels) >= 3 else ():
         order, label = one.order(q), f"{name}: order of {q}"
-        if len(one.levels) < 3:
-            continue
         if order is None:
             found.append(Invariant(label, SOURCE, None, None, Outcome.DISAGREES, "the error does not fall"))
             continue

@@ -80,17 +80,17 @@ def test_a_spoiled_part_does_not(edit, part):
 
 
 def test_an_error_beyond_its_limit_and_an_order_below_disagree():
-    assert {row.outcome for row in verdicts([staircase()], [], [])} == {Outcome.AGREES}
-    rows = verdicts([staircase(FINE | {"p0": 1e-4, "pressure": 1e-3})], [], [])
+    assert {row.outcome for row in verdicts([staircase()])} == {Outcome.AGREES}
+    rows = verdicts([staircase(FINE | {"p0": 1e-4, "pressure": 1e-3})])
     bad = {row.name.rpartition(": ")[2] for row in rows if row.outcome is Outcome.DISAGREES}
     assert bad == {"p0, N = 257", "order of p0", "order of pressure"}
-    (disc,) = verdicts([], [ExactError(HERTZ, "coated", "stress, inside", 2e-8)], [])
+    (disc,) = verdicts(errors=[ExactError(HERTZ, "coated", "stress, inside", 2e-8)])
     assert disc.outcome is Outcome.DISAGREES
 
 
 def test_a_study_that_fails_is_no_result():
     failed = replace(staircase(), failure="N = 257: not settled")
-    outcomes = [row.outcome for row in verdicts([failed], [], [], ("discs: no grid fits",))]
+    outcomes = [row.outcome for row in verdicts([failed], failures=["discs: no grid fits"])]
     assert outcomes == [Outcome.NO_RESULT, Outcome.NO_RESULT]
 
 

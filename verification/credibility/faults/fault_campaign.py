@@ -13,7 +13,7 @@ from verification.credibility.faults.fault_outcome import row_of
 from verification.credibility.faults.fault_planting import Fault
 from verification.credibility.faults.fault_trial import Trial, try_fault
 from verification.evidence.fault_record import Record
-from verification.running.case_result import CaseResult
+from verification.running.case_result import CaseResult, RunInfo
 from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.running.json_records import decode, encode
 from verification.running.pool.pool_task import Task
@@ -66,26 +66,18 @@ def kept_trial(fault: Fault, output: Path) -> Trial | None:
     return _trial(data) if same else None
 
 
-def record_of(
-    trials: Sequence[Trial],
-    *,
-    started: str,
-    seconds: float,
-    commit: str | None,
-    machine: str,
-    versions: dict[str, str],
-) -> Record:
-    """The record of all ``trials``, controls apart."""
+def record_of(trials: Sequence[Trial], info: RunInfo) -> Record:
+    """The record of all ``trials``, controls apart, with the provenance ``info`` of their run."""
     rows = [(trial.fault, row_of((FAULTS | CONTROLS)[trial.fault], trial)) for trial in trials]
     return Record(
         rows=tuple(row for name, row in rows if name in FAULTS),
         controls=tuple(row for name, row in rows if name in CONTROLS),
-        started=started,
-        seconds=seconds,
+        started=info.started,
+        seconds=info.seconds,
         core_seconds=sum(trial.seconds for trial in trials),
-        commit=commit,
-        machine=machine,
-        versions=versions,
+        commit=info.commit,
+        machine=f"{info.machine}, {info.jobs} jobs",
+        versions=dict(info.versions),
         failing_clean=tuple(sorted({message for trial in trials for message in trial.failing_clean})),
     )
 
