@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from verification.credibility.self_tests import SelfTest
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Claim, Outcome, Verdict
-from verification.regression.baseline_change import Drift
+from verification.regression.baseline_change import Drift, State
 from verification.regression.manifest import Difference, manifest_message
-from verification.sources.source_registry import CLOSED, EXACT
+from verification.sources.source_registry import CLOSED, EXACT, PUBLISHED
 
 
 @dataclass(frozen=True)
@@ -47,14 +47,11 @@ class Check:
         return f"{self.name} ({', '.join(filter(None, (self.detail, self.case)))}): {self.reason}"[:400]
 
 
-def of_claim(claim: Claim, verdict: Verdict, case: str, coated: bool, kind: str = "") -> Check:
-    """A comparison; ``kind`` "published" where one side is a published table."""
-    if kind:
-        column = kind
-    else:
-        sides = set(claim.between)
-        other = "closed form" if sides & set(CLOSED) else "exact" if sides & set(EXACT) else "methods"
-        column = f"{'coated' if coated else 'bare'}, {other}"
+def of_claim(claim: Claim, verdict: Verdict, case: str, coated: bool) -> Check:
+    """A comparison; that with a published table has a column of its own."""
+    sides = set(claim.between)
+    other = "closed form" if sides & set(CLOSED) else "exact" if sides & set(EXACT) else "methods"
+    column = PUBLISHED if PUBLISHED in sides else f"{'coated' if coated else 'bare'}, {other}"
     detail = f"{claim.line}, {' against '.join(claim.between)}"
     return Check(column, claim.quantity, case, detail, verdict.outcome, verdict.reason)
 
@@ -71,9 +68,9 @@ def of_study(row: Invariant) -> Check:
     return Check("studies", row.name, "", "", row.outcome, row.message)
 
 
-def of_baseline(row: Drift, case: str, same: bool) -> Check:
+def of_baseline(row: Drift, case: str) -> Check:
     """A profile compared with the baseline."""
-    outcome = Outcome.AGREES if same else Outcome.DISAGREES
+    outcome = Outcome.AGREES if row.state is State.SAME else Outcome.DISAGREES
     detail = f"{row.quantity} on {row.line}, {row.source}"
     return Check("baseline", "baseline", case, detail, outcome, row.message)
 

@@ -10,7 +10,7 @@ import numpy as np
 from verification.cases.case_file import Case, default_cases, read_case
 from verification.cases.published_file import PublishedCase, published_cases, read_published
 from verification.cases.published_table import PublishedColumn
-from verification.credibility import accuracy_study as accuracy_study
+from verification.credibility import accuracy_study
 from verification.credibility.faults.default_checks import (
     Check,
     of_baseline,
@@ -30,10 +30,10 @@ from verification.judging.verdict import Claim
 from verification.problem.coated_contact import Solution
 from verification.problem.line_profile import Profile
 from verification.problem.quantity import DISPLACEMENTS
-from verification.regression.baseline_change import State, drift, measured
+from verification.regression.baseline_change import drift, measured
 from verification.regression.manifest import differences, manifest_of
 from verification.running import contact_run as run
-from verification.running import published_run as published_run
+from verification.running import published_run
 from verification.running.case_result import CaseResult, SourceResult, from_json
 from verification.running.checked_files import read_checked
 from verification.sampling.line_sampling import sample, sample_contact
@@ -175,22 +175,16 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
     def concerned(claim: Claim) -> bool:
         return not available or bool(set(claim.between) & set(solve))
 
-    verdicts = [
-        (claim, run.decide(claim, profiles, outcomes, case.problem))
-        for claim in case.claims
-        if concerned(claim)
-    ]
+    claims = [claim for claim in case.claims if concerned(claim)]
+    verdicts = [(claim, run.decide(claim, profiles, outcomes, case.problem)) for claim in claims]
     coated = bool(case.problem.coatings)
     checks += [of_claim(claim, verdict, case.name, coated) for claim, verdict in verdicts]
     now = replace(clean, verdicts=tuple(verdicts), invariants=tuple(invariants))
+    made_here = [row for row in clean.invariants if row.source in solved.solutions]
     before = replace(
         clean,
-        verdicts=tuple((claim, verdict) for claim, verdict in clean.verdicts if concerned(claim)),
-        invariants=tuple(
-            row
-            for row in clean.invariants
-            if row.source in solved.solutions and not (staged and row.name in NAMES)
-        ),
+        verdicts=tuple(one for one in clean.verdicts if concerned(one[0])),
+        invariants=tuple(row for row in made_here if not (staged and row.name in NAMES)),
     )
     checks.append(of_manifest(differences(now, manifest_of(before)), clean.name))
     return checks, fresh
@@ -212,7 +206,7 @@ def _drifts(clean: CaseResult, fresh: Profiles) -> list[Check]:
     found = {numbers.key: numbers for numbers in measured(replace(clean, profiles=now))}
     solved = {source for _, _, source in fresh}
     rows = [drift(then, found[then.key]) for then in measured(clean) if then.source in solved]
-    return [of_baseline(row, clean.name, row.state is State.SAME) for row in rows]
+    return [of_baseline(row, clean.name) for row in rows]
 
 
 def _changes(clean: CaseResult, fresh: Profiles) -> list[tuple[float, str]]:
@@ -251,7 +245,7 @@ def _published(name: str, before: Columns) -> tuple[list[Check], tuple[float, st
     available = {m: s for m, s in run.solvers().items() if m in FOR_PUBLISHED}
     result = published_run.run(case, available)
     decided = [(c, v) for c, v in result.verdicts if set(c.between) & set(available)]
-    checks = [of_claim(c, v, name, False, kind="published") for c, v in decided]
+    checks = [of_claim(c, v, name, coated=False) for c, v in decided]
     change = (0.0, "nothing")
     for (old, old_value), (new, value) in zip(before, columns, strict=True):
         moved = max(
