@@ -14,7 +14,6 @@ from verification.cases.published_table import (
     FOLDER,
     UNITS,
     PublishedColumn,
-    PublishedError,
     columns_of,
     read_table,
     si_of,
@@ -85,8 +84,8 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
             texts.append(f"# {table.file}\n{content.raw}")
             columns += columns_of(table, content, units, problem, f"table.{i}")
         problem = _with_points(problem, columns)
-    except PublishedError as error:
-        raise CaseError(str(error)) from None
+    except CaseError:  # of a table, which names its own file
+        raise
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: {error}") from None
     claims = tuple(
