@@ -45,7 +45,7 @@ def test_both_methods_give_the_exact_curve_within_their_uncertainty(method):
     for name in ("kappa", "load", "approach"):
         (value, U), (expected, V) = found.quantity(name, at), exact.quantity(name, at)
         assert (np.abs(value - expected) <= U + V).all(), name
-        # Some 1e-5 is what STEP and a mesh of half the usual fineness are good for.
+        # What a mesh of half the usual fineness is good for.
         assert (U / value).max() <= 5e-5, name
 
 
