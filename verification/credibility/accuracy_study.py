@@ -14,17 +14,13 @@ from verification.credibility.exact_errors import (
     film_errors,
     turned_ellipse,
 )
-from verification.credibility.refinement_studies import (
-    Refinement,
-    failure_message,
-    refined_grid,
-    refined_mesh,
-)
+from verification.credibility.refinement_studies import Refinement, refined_grid, refined_mesh
 from verification.credibility.study_verdicts import CORRECTED, PLAIN, STAIRCASE, verdicts
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.invariants.influence_error import ConversionError, conversion_errors
 from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import CoatedContact
+from verification.running.case_result import message_of
 from verification.running.checked_files import write_checked
 from verification.running.json_records import RecordFile, decode
 from verification.running.pool.pool_task import Task
@@ -77,7 +73,7 @@ def measure() -> AccuracyStudy:
         try:
             return compute()
         except Exception as error:  # a message of the report, not a traceback
-            failures.append(f"{part}: {failure_message(error)}")
+            failures.append(f"{part}: {message_of(error)}")
             return ()
 
     available = solvers(COATED)
@@ -127,7 +123,7 @@ def quick() -> tuple[Invariant, ...]:
         try:
             found += part()
         except Exception as error:
-            found += verdicts(failures=[f"discs and ellipses: {failure_message(error)}"])
+            found += verdicts(failures=[f"discs and ellipses: {message_of(error)}"])
         if any(row.outcome is Outcome.DISAGREES for row in found):
             break
     return tuple(found)

@@ -16,6 +16,7 @@ from verification.problem.gauss_legendre import gauss_legendre
 from verification.problem.line_profile import lines_of
 from verification.problem.quantity import QUANTITIES as ALL
 from verification.problem.quantity import SCALARS
+from verification.running.case_result import message_of
 from verification.sources.exact_sources import solve_exactly
 from verification.sources.method_sources import solve_semianalytic
 
@@ -167,10 +168,5 @@ def _refined(
             resolution = float(numerics.get("patches") or np.sqrt(found.diagnostics.dofs))
             levels.append(Level(name, resolution, seconds, errors(found)))
     except Exception as error:  # a message of the report, not a traceback
-        failure = f"{[*steps][len(levels)]}: {failure_message(error)}"
+        failure = f"{[*steps][len(levels)]}: {message_of(error)}"
     return replace(empty, levels=tuple(levels), failure=failure)
-
-
-def failure_message(error: Exception) -> str:
-    """The message of ``error`` in one line."""
-    return " ".join(str(error).split())[:400]
