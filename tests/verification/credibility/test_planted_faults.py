@@ -8,10 +8,8 @@ from synthetic_results import INFO
 
 from verification.cases.case_file import default_cases, read_case, shipped_cases
 from verification.commands.credibility.faults import faults
-from verification.credibility.faults import fault_campaign
-from verification.credibility.faults.default_checks import Check
+from verification.credibility.faults.fault_campaign import record_of, row_of
 from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS, LISTS
-from verification.credibility.faults.fault_outcome import row_of
 from verification.credibility.faults.fault_planting import (
     Constant,
     Edit,
@@ -20,7 +18,7 @@ from verification.credibility.faults.fault_planting import (
     owner_of,
     planted,
 )
-from verification.credibility.faults.fault_trial import Trial, clean_path, try_fault
+from verification.credibility.faults.fault_trial import Check, Trial, clean_path, try_fault
 from verification.evidence.fault_record import Catch, Record, read_record, to_json, write_record
 from verification.judging.verdict import Outcome
 from verification.running import contact_run as running
@@ -188,7 +186,7 @@ def test_drift_alone_counts_only_where_it_was_foretold():
 
 
 def _record(*trials: Trial) -> Record:
-    return fault_campaign.record_of(trials, INFO)
+    return record_of(trials, INFO)
 
 
 def _trial(name: str, outcome: Outcome = Outcome.DISAGREES, change: float = 0.1) -> Trial:
