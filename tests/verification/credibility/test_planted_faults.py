@@ -100,18 +100,6 @@ def test_a_fault_that_no_longer_fits_the_source_is_refused(change, said):
         pass
 
 
-@pytest.mark.parametrize(
-    ("name", "part"),
-    [("components_swapped", "sampling"), ("units_slipped_case", "case file"), ("stale_code", "storing")],
-)
-def test_a_fault_of_the_harness_is_caught_by_the_self_test_named_for_it(name, part, tmp_path):
-    row = row_of(FAULTS[name], try_fault(FAULTS[name], tmp_path))
-    assert row.catch is Catch.DISAGREES
-    assert row.as_predicted
-    assert part in row.by
-    assert row.change >= 1
-
-
 @pytest.fixture(scope="module")
 def clean(tmp_path_factory):
     """A clean run of the uncoated case in which the exact reference stands in for both methods."""
