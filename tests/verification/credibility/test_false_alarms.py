@@ -22,10 +22,9 @@ from verification.cases.random_problems import (
 )
 from verification.credibility.false_alarms import counted
 from verification.desk.stack_text import outside_verified
-from verification.evidence.alarm_record import path_in, read_record, write_record
+from verification.evidence.alarm_record import read_record
 from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Outcome
-from verification.running.checked_files import StoreError
 
 E, NU = STEEL
 
@@ -97,19 +96,21 @@ def test_whatever_is_not_agreement_is_an_alarm():
     wrong = result_of(
         contact((4 * E, NU, 1.0)), name="wrong", errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}
     )
-    vague = result_of(contact((E / 2, NU, 1.0)), name="vague", errors={"semianalytic": 4e-3})
+    vague = result_of(contact((E / 2, NU, 1.0)), name="vague", errors={"semianalytic": 4e-3}, text="x = 1\n")
     dead = crashed(contact((2 * E, NU, 1.0)), "dead", "killed")
     clean = counted([good], 1, INFO)
     assert (clean.alarms, clean.agreeing, clean.problems) == ((), 1, 1)
     assert clean.comparisons == len(good.verdicts)
-    found = counted([good, wrong, vague, dead], 1, INFO)
+    empty = replace(good, name="empty", verdicts=())
+    found = counted([good, wrong, vague, dead, empty], 1, INFO)
     assert found.agreeing == 1
     outcomes = {alarm.case: set() for alarm in found.alarms}
     for alarm in found.alarms:
         outcomes[alarm.case].add(alarm.outcome)
-    assert outcomes["dead"] == {Outcome.NO_RESULT}
+    assert outcomes["dead"] == outcomes["empty"] == {Outcome.NO_RESULT}
     assert Outcome.INCONCLUSIVE in outcomes["vague"]
     assert Outcome.DISAGREES in outcomes["wrong"]
+    assert {alarm.toml for alarm in found.alarms if alarm.case == "vague"} == {"x = 1\n"}
     assert "good" not in outcomes
     assert found.comparisons == sum(len(r.verdicts) for r in (good, wrong, vague, dead))
 
@@ -127,26 +128,6 @@ def test_ratios_count_every_error_over_its_uncertainty():
     assert (generous.within, narrow.within < 1) == (1.0, True)
     assert generous.largest <= 1 < narrow.largest
     assert generous.median > 1.5 * narrow.median  # the exact reference has an uncertainty too
-
-
-def test_a_result_without_any_comparison_is_an_alarm():
-    empty = replace(result_of(contact(), name="empty"), verdicts=())
-    found = counted([empty], 1, INFO)
-    assert [a.outcome for a in found.alarms] == [Outcome.NO_RESULT]
-    assert found.agreeing == 0
-
-
-def test_a_record_comes_back_whole_or_not_at_all(tmp_path):
-    assert read_record(tmp_path) is None
-    vague = result_of(contact((E / 2, NU, 1.0)), name="vague", errors={"semianalytic": 4e-3}, text="x = 1\n")
-    record = counted([vague], 3, INFO)
-    write_record(tmp_path, record)
-    assert read_record(tmp_path) == record
-    assert record.alarms[0].toml == "x = 1\n"
-    path = path_in(tmp_path)
-    path.write_bytes(path.read_bytes()[:-40])
-    with pytest.raises(StoreError, match=r"alarms\.json"):
-        read_record(tmp_path)
 
 
 @pytest.mark.slow
