@@ -123,13 +123,9 @@ class _Coating(Limited, Stressed):
     layers: Annotated[int, Field(ge=2, le=LAYERS)] | None = None
 
     @model_validator(mode="after")
-    def _graded(self) -> "_Coating":
+    def _whole(self) -> "_Coating":
         if (self.layers is None) != isinstance(self.E, float):
             raise ValueError("is graded: needs E as a course over the depth, with its number of layers")
-        return self
-
-    @model_validator(mode="after")
-    def _one_thickness(self) -> "_Coating":
         if (self.thickness is None) == (self.thickness_over_a_h is None):
             raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
         return self
@@ -269,9 +265,8 @@ class _Problem(Sized):
         ball, substrate = self.ball, (self.substrate.E, self.substrate.nu)
         indenter, size = (self.indenter.pair, self.indenter.radii) if self.indenter else (None, None)
         radius = float((size[0] * size[1]) ** 0.5) if size else self.size
-        bare = CoatedContact(
-            radius, self.load, (), substrate, self.friction, ball.bare if ball else None, indenter
-        )
+        uncoated = ball.bare if ball else None
+        bare = CoatedContact(radius, self.load, (), substrate, self.friction, uncoated, indenter)
         given = ball.coated(bare.a_h, over) if ball else None
         return replace(bare, coatings=_in_metres(self.coatings, bare.a_h, over), ball=given)
 
@@ -343,11 +338,7 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
     problem, treated = _rigid(problem)
     if checked.resolve and not problem.coatings:
         raise CaseError(f"{path}: resolve: requires a coating; add one, or leave resolve out")
-    numerics = {
-        method: getattr(checked, method).model_dump(exclude_none=True)
-        for method in METHODS
-        if method in _CaseFile.model_fields
-    }
+    numerics = {method: getattr(checked, method).model_dump(exclude_none=True) for method in METHODS}
     claims = _claims(path, checked, problem)
     if not claims:
         raise CaseError(f"{path}: claim: nothing is claimed of this problem, so that nothing would be judged")
@@ -375,10 +366,8 @@ def _rigid(problem: CoatedContact) -> tuple[CoatedContact, tuple[str, ...]]:
     if problem.ball is None or problem.ball[2] or problem.ball[0] <= CONTRAST * stiffest:
         return problem, ()
     contrast = problem.ball[0] / stiffest
-    told = (
-        f"ball.E is {contrast:.2g} times that of the flat, above {CONTRAST:g}; the ball is treated as rigid"
-    )
-    return replace(problem, ball=None), (told,)
+    told = f"ball.E is {contrast:.2g} times that of the flat, above {CONTRAST:g}"
+    return replace(problem, ball=None), (f"{told}; the ball is treated as rigid",)
 
 
 def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
@@ -393,11 +382,11 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
     for body in problem.bodies:
         seen, key = problem.seen_from(body), f"{path}: problem{'.ball' if body == BALL else ''}"
         for i, (_, _, h) in enumerate(seen.coatings):
-            if not SUPPORTED[0] <= h / a_h <= SUPPORTED[1]:
+            low, high = SUPPORTED
+            if not low <= h / a_h <= high:
                 reason = (
                     f"{h * 1e6:.3g} um is {h / a_h:.3g} times the contact radius; both methods support "
-                    f"{SUPPORTED[0]:g} to {SUPPORTED[1]:g}, {SUPPORTED[0] * a_h * 1e6:.3g} um to "
-                    f"{SUPPORTED[1] * a_h * 1e6:.3g} um"
+                    f"{low:g} to {high:g}, {low * a_h * 1e6:.3g} um to {high * a_h * 1e6:.3g} um"
                 )
                 raise CaseError(f"{key}.coatings.{i}.thickness: {reason}{slips}")
         moduli = [*(E for E, _, _ in seen.coatings), seen.substrate[0]]

@@ -17,8 +17,6 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from verification.cases.toml_file import Strict
 from verification.cases.unit_numbers import Pascals
 
-__all__ = ["LAYERS", "Course", "Modulus", "Table", "moduli"]
-
 LAYERS = 50  # of a body at most, sub-layers counted
 
 
@@ -39,9 +37,8 @@ class Table(Strict):
     @model_validator(mode="after")
     def _whole(self) -> "Table":
         if len(self.depth) != len(self.E):
-            raise ValueError(
-                f"has {len(self.depth)} depths and {len(self.E)} moduli; give one E for each depth"
-            )
+            count = f"{len(self.depth)} depths and {len(self.E)} moduli"
+            raise ValueError(f"has {count}; give one E for each depth")
         if (self.depth[0], self.depth[-1]) != (0, 1) or np.diff(self.depth).min() <= 0:
             raise ValueError("has depths that do not rise from 0 to 1")
         return self

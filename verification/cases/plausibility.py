@@ -10,8 +10,6 @@ from collections.abc import Iterator, Mapping
 from verification.cases.unit_numbers import InSI
 from verification.problem.coated_contact import BALL, CoatedContact
 
-__all__ = ["beyond_limits", "likely_slips", "refused", "residual_warnings", "warnings_of"]
-
 MODULI = (1e6, 2e12)  # Pa
 USUAL_MODULI = (1e9, 1.3e12)  # Pa, polymers to diamond
 USUAL_THICKNESSES = (1e-8, 2e-4)  # m
@@ -65,7 +63,7 @@ def residual_warnings(residual: Mapping[str, tuple[float, ...]]) -> tuple[str, .
     for body, stresses in residual.items():
         for i, value in enumerate(stresses):
             if value and not RESIDUAL[0] <= abs(value) <= RESIDUAL[1]:
-                key = f"{'ball.' if body == BALL else ''}coatings.{i}.residual_stress"
+                key = f"{_before(body)}coatings.{i}.residual_stress"
                 slip = "; check its unit"
                 if not isinstance(value, InSI) and abs(value) < 1e5:
                     slip = f"; {key} = {value:g} looks like {'GPa' if abs(value) < 50 else 'MPa'}"
@@ -86,7 +84,7 @@ def _numbers(problem: CoatedContact) -> Iterator[str]:
             "radius", problem.radius, _LENGTH_UNITS, (1e-5, LARGEST_RADIUS), prefer="mm"
         )
     for body in problem.bodies:
-        seen, of = problem.seen_from(body), f"{BALL}." if body == BALL else ""
+        seen, of = problem.seen_from(body), _before(body)
         moduli = {f"{of}coatings.{i}.E": E for i, (E, _, _) in enumerate(seen.coatings)}
         base = f"{of}E" if body == BALL else "substrate.E"
         for key, E in {base: seen.substrate[0], **moduli}.items():
@@ -105,7 +103,7 @@ def _thick(problem: CoatedContact) -> Iterator[str]:
     a_h = problem.a_h or sys.float_info.min  # below which floating point has nothing
     for body in problem.bodies:
         for i, (_, _, h) in enumerate(problem.seen_from(body).coatings):
-            key = f"{f'{BALL}.' if body == BALL else ''}coatings.{i}.thickness"
+            key = f"{_before(body)}coatings.{i}.thickness"
             if h > problem.radius or h <= min(THICKEST * a_h, COATING):
                 continue
             reason = f"is {h / a_h:.3g} contact radii; what lies below has no part"
@@ -118,13 +116,12 @@ def _order(problem: CoatedContact) -> Iterator[str]:
     """A line where the surface layer is by far the thinnest: a stack given from the substrate up."""
     for body in problem.bodies:
         coatings = problem.seen_from(body).coatings
-        if (
-            len(coatings) == 2
-            and coatings[0][2] < THINNER * coatings[1][2]
-            and coatings[0][0] != coatings[1][0]
-        ):
-            of = f"{BALL}." if body == BALL else ""
-            ratio = coatings[0][2] / coatings[1][2]
+        if len(coatings) != 2:
+            continue
+        (E, _, h), (E_below, _, h_below) = coatings
+        ratio = h / h_below
+        if ratio < THINNER and E_below != E:
+            of = _before(body)
             yield (
                 f"{of}coatings.0, at the surface, has {ratio:.2g} of the thickness of {of}coatings.1 below "
                 "it; coatings are listed from the surface down"
@@ -158,6 +155,11 @@ def _slip(
         if usual[0] <= value * units[unit] <= usual[1]:
             return f"; {key} = {value:g} looks like {unit}"
     return "; check its unit"
+
+
+def _before(body: str) -> str:
+    """Beginning of the keys of a body."""
+    return f"{BALL}." if body == BALL else ""
 
 
 def _stress(value: float) -> str:

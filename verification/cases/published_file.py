@@ -14,7 +14,6 @@ from verification.cases.published_table import (
     FOLDER,
     UNITS,
     PublishedColumn,
-    PublishedError,
     columns_of,
     read_table,
     si_of,
@@ -24,7 +23,7 @@ from verification.cases.unit_numbers import of_file
 from verification.judging.verdict import Claim
 from verification.problem.array_types import Ball, Coatings
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad
-from verification.problem.loading_curve import CONTROLS, PUNCH, LoadingCurve, Problem
+from verification.problem.loading_curve import CONTROLS, LoadingCurve, Problem
 from verification.problem.quantity import QUANTITIES
 from verification.sources.source_registry import EXACT, METHODS, PUBLISHED, SOURCES
 
@@ -85,8 +84,8 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
             texts.append(f"# {table.file}\n{content.raw}")
             columns += columns_of(table, content, units, problem, f"table.{i}")
         problem = _with_points(problem, columns)
-    except PublishedError as error:
-        raise CaseError(str(error)) from None
+    except CaseError:  # of a table, which names its own file
+        raise
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: {error}") from None
     claims = tuple(
@@ -123,8 +122,7 @@ def _with_points(problem: Problem, columns: list[PublishedColumn]) -> Problem:
     if len(controls) > 1 or "" in controls:
         raise ValueError(f"at: give one of {', '.join(CONTROLS)} for every value of a loading curve")
     at = sorted({float(x) for item in columns for x in item.at.along})
-    punch = any(item.profile.quantity in PUNCH for item in columns)
-    return replace(problem, control=controls.pop(), at=tuple(at), punch=punch)
+    return replace(problem, control=controls.pop(), at=tuple(at))
 
 
 def _problem(p: ProblemEntry) -> Problem:

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from verification.cases.published_schema import ColumnEntry, PositionEntry, TableEntry
+from verification.cases.toml_file import CaseError
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import PrescribedLoad
 from verification.problem.evaluation_points import Points
@@ -38,10 +39,6 @@ DEPARTURE = "_departure"  # a column of this ending lists the departures of the 
 RECOMPUTED = "recomputed"  # value of ``seen`` for tables that the source does not print
 
 
-class PublishedError(ValueError):
-    """A table that cannot be used; the message names file, row and column."""
-
-
 @dataclass(frozen=True)
 class PublishedTable:
     """The cells of a table as text, row by row, with their line numbers.
@@ -61,21 +58,21 @@ class PublishedTable:
         kept = [i for i, _ in enumerate(self.rows) if all(self._is(i, c, v) for c, v in condition.items())]
         if not kept:
             wanted = ", ".join(f"{column} = {value}" for column, value in condition.items())
-            raise PublishedError(f"{self.path.name}: no row has {wanted}")
+            raise CaseError(f"{self.path.name}: no row has {wanted}")
         return replace(self, rows=tuple(self.rows[i] for i in kept), lines=tuple(self.lines[i] for i in kept))
 
     def text(self, column: str) -> tuple[str, ...]:
-        """The cells of a column as printed. Raises PublishedError where there is no such column."""
+        """The cells of a column as printed. Raises CaseError where there is no such column."""
         if column not in self.columns:
             known = ", ".join(self.columns)
-            raise PublishedError(f"{self.path.name}: has no column {column!r}; it has {known}")
+            raise CaseError(f"{self.path.name}: has no column {column!r}; it has {known}")
         number = self.columns.index(column)
         return tuple(row[number] for row in self.rows)
 
     def numbers(self, column: str, empty: float | None = None) -> tuple[float, ...]:
         """The cells of a column as numbers; ``empty``, where given, is the value of an empty cell.
 
-        Raises PublishedError where one is not a finite number.
+        Raises CaseError where one is not a finite number.
         """
         return tuple(
             self._number(i, column, cell) if cell or empty is None else empty
@@ -105,27 +102,27 @@ class PublishedTable:
         if not isfinite(value):
             shown = repr(cell if len(cell) <= 40 else cell[:37] + "...")
             where = f"{self.path.name}, line {self.lines[row]}, column {column}"
-            raise PublishedError(f"{where}: {shown} is not a finite number")
+            raise CaseError(f"{where}: {shown} is not a finite number")
         return value
 
 
 def read_table(path: Path) -> PublishedTable:
     """Read a CSV file: notes marked #, one line of column names, then rows of as many cells.
 
-    Raises PublishedError naming file and line where it is not so.
+    Raises CaseError naming file and line where it is not so.
     """
     try:
         if not path.is_file():
-            raise PublishedError(f"{path.name}: cannot be read; a table is a file beside its case file")
+            raise CaseError(f"{path.name}: cannot be read; a table is a file beside its case file")
         with path.open("rb") as file:
             raw = file.read(MAX_BYTES + 1)
         text = raw.decode("utf-8")
     except OSError as error:
-        raise PublishedError(f"{path.name}: cannot be read ({error.strerror})") from None
+        raise CaseError(f"{path.name}: cannot be read ({error.strerror})") from None
     except UnicodeDecodeError:
-        raise PublishedError(f"{path.name}: not UTF-8 text; a table is a CSV file") from None
+        raise CaseError(f"{path.name}: not UTF-8 text; a table is a CSV file") from None
     if len(raw) > MAX_BYTES:
-        raise PublishedError(f"{path.name}: larger than {MAX_BYTES} bytes; split the table")
+        raise CaseError(f"{path.name}: larger than {MAX_BYTES} bytes; split the table")
     notes, header, rows, lines = [], None, [], []
     for number, line in enumerate(text.splitlines(), start=1):
         if line.startswith("#") and header is None:
@@ -139,13 +136,13 @@ def read_table(path: Path) -> PublishedTable:
             continue
         if len(cells) != len(header):
             found = f"{len(cells)} cells under {len(header)} columns ({', '.join(header)})"
-            raise PublishedError(f"{path.name}, line {number}: {found}")
+            raise CaseError(f"{path.name}, line {number}: {found}")
         rows.append(cells)
         lines.append(number)
     if header is None or not rows:
-        raise PublishedError(f"{path.name}: no {'columns' if header is None else 'rows'} in it")
+        raise CaseError(f"{path.name}: no {'columns' if header is None else 'rows'} in it")
     if len(set(header)) < len(header) or "" in header:
-        raise PublishedError(f"{path.name}: column names must be given and differ: {', '.join(header)}")
+        raise CaseError(f"{path.name}: column names must be given and differ: {', '.join(header)}")
     return PublishedTable(path, text, "\n".join(notes), header, tuple(rows), tuple(lines))
 
 
@@ -208,7 +205,7 @@ def si_of(name: str, units: dict[str, float], where: str) -> float:
 def columns_of(
     table: TableEntry, content: PublishedTable, units: dict[str, float], problem: Problem, key: str
 ) -> list[PublishedColumn]:
-    """The columns of a table, line by line. Raises PublishedError, or ValueError that names a key."""
+    """The columns of a table, line by line. Raises CaseError, or ValueError that names a key."""
     content = content.where(table.rows) if table.rows else content
     labels = content.text(table.label) if table.label else ("",) * len(content.rows)
     found = []
@@ -217,10 +214,10 @@ def columns_of(
         named = f"{here}: quantity {column.quantity!r}"
         known = [name for name in QUANTITIES if name not in PEAKS + SLOPES]
         if column.quantity not in known:
-            raise PublishedError(f"{named} is unknown; known are {', '.join(known)}")
+            raise CaseError(f"{named} is unknown; known are {', '.join(known)}")
         fits = (column.quantity in CURVES) == isinstance(problem, LoadingCurve)
         if not fits and column.quantity not in SCALARS:
-            raise PublishedError(
+            raise CaseError(
                 f"{named} does not go with this problem; {', '.join(CURVES)} belong to a sphere without a "
                 "load, all others to a load"
             )
@@ -230,13 +227,18 @@ def columns_of(
         try:
             to_si = column.factor * si_of(column.unit, units, here)
         except ValueError as error:
-            raise PublishedError(str(error)) from None
+            raise CaseError(str(error)) from None
         points = _points(at, content, units, problem, here)
         value = np.array(content.numbers(column.name)) * to_si
-        U = _uncertainty(column, content) * abs(to_si)
+        if column.uncertainty is not None:
+            U = np.full(value.shape, column.uncertainty) * abs(to_si)
+        else:
+            U = np.array(content.half_digits(column.name, column.significant)) * abs(to_si)
         scale = _scale(column, table, content, units, problem)
         _check_ceiling(table, content, U / scale if scale else np.full(len(U), np.inf), here)
-        departure = _departure(column, content) * to_si
+        departure = np.zeros(value.shape)
+        if (listed := column.name + DEPARTURE) in content.columns:
+            departure = np.array(content.numbers(listed, empty=0.0)) * to_si
         _check_departures(content, departure, U, here)
         for name, rows in points.lines():
             line = f"{name}, {content.path.stem}, column {column.name}"
@@ -287,37 +289,22 @@ def _points(
         x, y, z = (metres(v) for v in (at.x, at.y, at.z))
         return Points.of(x, y, z, problem.coatings, at.layer, at.unit, unit)
     except ValueError as error:
-        raise PublishedError(f"{where}: {error}") from None
-
-
-def _uncertainty(column: ColumnEntry, content: PublishedTable) -> Array:
-    """Uncertainty of every row in the unit of the column: of digitisation, or half of the last digit."""
-    if column.uncertainty is not None:
-        return np.full(len(content.rows), column.uncertainty)
-    return np.array(content.half_digits(column.name, column.significant))
-
-
-def _departure(column: ColumnEntry, content: PublishedTable) -> Array:
-    """Listed departure of every row in the unit of the column, 0 where none is listed."""
-    name = column.name + DEPARTURE
-    if name not in content.columns:
-        return np.zeros(len(content.rows))
-    return np.array(content.numbers(name, empty=0.0))
+        raise CaseError(f"{where}: {error}") from None
 
 
 def _check_departures(content: PublishedTable, departure: Array, U: Array, where: str) -> None:
-    """Raise PublishedError naming the first row whose listed departure is no larger than its uncertainty."""
+    """Raise CaseError naming the first row whose listed departure is no larger than its uncertainty."""
     for line, size, least in zip(content.lines, abs(departure), U, strict=True):
         if 0 < size <= least:
-            raise PublishedError(f"{where}, line {line}: the departure is within the uncertainty; remove it")
+            raise CaseError(f"{where}, line {line}: the departure is within the uncertainty; remove it")
 
 
 def _check_ceiling(table: TableEntry, content: PublishedTable, fraction: Array, where: str) -> None:
-    """Raise PublishedError naming the first row whose uncertainty exceeds the ceiling."""
+    """Raise CaseError naming the first row whose uncertainty exceeds the ceiling."""
     ceiling = CEILING if table.ceiling is None else table.ceiling.fraction
     for line, found in zip(content.lines, fraction, strict=True):
         if not found <= ceiling:
-            raise PublishedError(
+            raise CaseError(
                 f"{where}, line {line}: the uncertainty is {found:.2g} of the scale, above the ceiling "
                 f"{ceiling:g}; give ceiling = {{ fraction, why }} where the source supports no less"
             )

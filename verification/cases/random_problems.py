@@ -6,6 +6,7 @@ The same seed with the same number is the same problem on every machine: the ran
 four digits and written as a case file, which is then read and solved.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import log
 
@@ -57,12 +58,12 @@ def draw(seed: int, number: int, films: bool = False) -> Draw:
     films : a thin film, alone or below another, under a ball without coatings.
     """
     random = np.random.default_rng([seed, number])
-    coatings = int(random.integers(1, (MOST_FILMS if films else MOST_COATINGS) + 1))
+    count = int(random.integers(1, (MOST_FILMS if films else MOST_COATINGS) + 1))
     E = _log_uniform(random, MODULUS)
-    ratios = [_log_uniform(random, FILM_RATIO if films else RATIO) for _ in range(coatings)]
-    poisson = [_rounded(random.uniform(*POISSON)) for _ in range(coatings + 1)]
-    thin = (OVER_INTERLAYER, FILM_THICKNESS)[-coatings:] if films else ()
-    thicknesses = [_log_uniform(random, h) for h in thin] or _thicknesses(random, coatings)
+    ratios = [_log_uniform(random, FILM_RATIO if films else RATIO) for _ in range(count)]
+    poisson = [_rounded(random.uniform(*POISSON)) for _ in range(count + 1)]
+    thin = (OVER_INTERLAYER, FILM_THICKNESS)[-count:] if films else ()
+    thicknesses = [_log_uniform(random, h) for h in thin] or _thicknesses(random, count)
     sliding = random.uniform() >= FRICTIONLESS
     friction = _rounded(random.uniform(*FRICTION)) if sliding else 0.0
     radius = _log_uniform(random, RADIUS)
@@ -70,12 +71,12 @@ def draw(seed: int, number: int, films: bool = False) -> Draw:
     compliance, ball, on_ball = (1 - poisson[-1] ** 2) / E, "", []
     if random.uniform() < ELASTIC:
         most = 0 if films else MOST_COATINGS
-        E_ball, count = _log_uniform(random, RATIO) * E, int(random.integers(0, most + 1))
+        E_ball, more = _log_uniform(random, RATIO) * E, int(random.integers(0, most + 1))
         E_ball, nu = _rounded(E_ball), _rounded(random.uniform(*POISSON))
         on_ball = [
             f"{{ E = {_rounded(_log_uniform(random, RATIO) * E_ball)!r}, "
             f"nu = {_rounded(random.uniform(*POISSON))!r}, thickness_over_a_h = {h!r} }}"
-            for h in _thicknesses(random, count)
+            for h in _thicknesses(random, more)
         ]
         ball = f"ball = {{ E = {E_ball!r}, nu = {nu!r}, coatings = [{', '.join(on_ball)}] }}"
         compliance += (1 - nu**2) / E_ball
@@ -83,28 +84,19 @@ def draw(seed: int, number: int, films: bool = False) -> Draw:
 
     layers = ", ".join(f"E1/E2 = {r:.3g}, h = {h:.3g} a_h" for r, h in zip(ratios, thicknesses, strict=True))
     kind = "films" if films else "draw"
-    title = f"{kind.capitalize()} {number} of seed {seed}: {layers}" + (
-        f", f = {friction:.3g}" if friction else ""
-    )
+    title = f"{kind.capitalize()} {number} of seed {seed}: {layers}"
+    title += f", f = {friction:.3g}" if friction else ""
     title += f", elastic ball, coatings on it: {len(on_ball)}" if ball else ""
-    lines = [
-        f'title = "{title}"',
-        'source = "drawn at random"',
-        "[problem]",
+    given = [
         f"radius = {radius!r}",
         f"load = {load!r}",
         f"friction = {friction!r}",
         f"substrate = {{ E = {E!r}, nu = {poisson[-1]!r} }}",
         *([ball] if ball else []),
     ]
-    for ratio, nu, h in zip(ratios, poisson, thicknesses, strict=False):
-        lines += [
-            "[[problem.coatings]]",
-            f"E = {_rounded(ratio * E)!r}",
-            f"nu = {nu!r}",
-            f"thickness_over_a_h = {h!r}",
-        ]
-    return Draw(f"{kind}_{seed}_{number:03d}", title, "\n".join(lines) + "\n")
+    moduli = [_rounded(ratio * E) for ratio in ratios]
+    coatings = zip(moduli, poisson, thicknesses, strict=False)
+    return Draw(f"{kind}_{seed}_{number:03d}", title, _text(title, given, coatings))
 
 
 def draw_ellipse(seed: int, number: int) -> Draw:
@@ -118,20 +110,23 @@ def draw_ellipse(seed: int, number: int) -> Draw:
     if random.uniform() < 0.5:
         radii.reverse()
     title = f"Ellipse {number} of seed {seed}: about {elongation:.3g} : 1, E1/E2 = {ratio:.3g}, h = {h:.3g} b"
-    lines = [
-        f'title = "{title}, f = {friction:.3g}"',
-        'source = "drawn at random"',
-        "[problem]",
+    given = [
         f'indenter = {{ shape = "ellipsoid", radii = {radii!r} }}',
         f"load = {LOAD!r}",
         f"friction = {friction!r}",
         f"substrate = {{ E = {STEEL!r}, nu = {_rounded(nu_below)!r} }}",
-        "[[problem.coatings]]",
-        f"E = {_rounded(ratio * STEEL)!r}",
-        f"nu = {_rounded(nu)!r}",
-        f"thickness_over_a_h = {_rounded(h / elongation**0.5)!r}",
     ]
-    return Draw(f"ellipse_{seed}_{number:03d}", title, "\n".join(lines) + "\n")
+    coating = _rounded(ratio * STEEL), _rounded(nu), _rounded(h / elongation**0.5)
+    text = _text(f"{title}, f = {friction:.3g}", given, [coating])
+    return Draw(f"ellipse_{seed}_{number:03d}", title, text)
+
+
+def _text(title: str, given: list[str], coatings: Iterable[tuple[float, float, float]]) -> str:
+    """A case file; ``coatings`` : E [Pa], nu, h / a_h."""
+    lines = [f'title = "{title}"', 'source = "drawn at random"', "[problem]", *given]
+    for E, nu, h in coatings:
+        lines += ["[[problem.coatings]]", f"E = {E!r}", f"nu = {nu!r}", f"thickness_over_a_h = {h!r}"]
+    return "\n".join(lines) + "\n"
 
 
 def _thicknesses(random: np.random.Generator, coatings: int) -> list[float]:

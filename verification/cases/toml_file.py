@@ -13,7 +13,6 @@ MAX_BYTES = 250_000
 # 200 kB, exhaust 20 GB. A line of a case file has a few dots.
 MAX_DOTS = 250
 MAX_NAME = 100
-RENAMED = {"laws": "resolve"}  # keys of earlier versions
 
 
 class CaseError(ValueError):
@@ -99,11 +98,10 @@ def first_error(error: ValidationError, listed: int = 1) -> str:
 
 def _told(first: Any) -> str:
     key = ".".join(_shortened(str(part)) for part in first["loc"]) or "top level"
-    renamed = RENAMED.get(key, "")
     message = first["msg"].removeprefix("Value error, ")
     text = {
         "missing": "is missing",
-        "extra_forbidden": f"is now called {renamed}" if renamed else "is an unknown key",
+        "extra_forbidden": "is an unknown key",
         "finite_number": "must be a finite number",
         "float_type": "must be a number",
         "int_type": "must be a whole number",

@@ -6,7 +6,7 @@ is the same number as 3e-6.
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
@@ -15,20 +15,6 @@ from pydantic import BaseModel, Field, ValidationError, WrapValidator
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
-
-__all__ = [
-    "METRIC",
-    "AnyPascals",
-    "InSI",
-    "Metres",
-    "Newtons",
-    "Pascals",
-    "Seconds",
-    "Units",
-    "in_si",
-    "of_file",
-    "units_of",
-]
 
 LONGEST = 60  # characters of a text
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d{1,4})?)(.*)", re.ASCII | re.DOTALL)
@@ -43,8 +29,6 @@ _USUAL = {
     "N": ("N", "mN", "uN", "kN", "kgf", "lbf"),
     "s": ("s", "min", "h"),
 }
-
-
 # Powers of ten of the units of most files, for which pint, half a second, need not be imported.
 METRIC = {
     "m": {"m": 0, "mm": -3, "um": -6, "µm": -6, "nm": -9},
@@ -95,12 +79,10 @@ def units_of(file: BaseModel) -> Units:
     µm and MPa for those that have no unit in the file.
     """
     given = list(_with_units(file, ""))
-    found = Units()
-    for length in [one.unit for key, one in given if key in _LENGTHS][:1]:
-        found = replace(found, length=length.replace("um", "µm"), metre=float(in_si(f"1 {length}", "m")))
-    for stress in [one.unit for key, one in given if key in _STRESSES][:1]:
-        found = replace(found, stress=stress, pascal=float(in_si(f"1 {stress}", "Pa")))
-    return found
+    length = next((one.unit for key, one in given if key in _LENGTHS), "um")
+    stress = next((one.unit for key, one in given if key in _STRESSES), "MPa")
+    metre, pascal = float(in_si(f"1 {length}", "m")), float(in_si(f"1 {stress}", "Pa"))
+    return Units(length.replace("um", "µm"), metre, stress, pascal)
 
 
 def _with_units(part: Any, key: str) -> Iterator[tuple[str, InSI]]:

@@ -14,17 +14,13 @@ from verification.credibility.exact_errors import (
     film_errors,
     turned_ellipse,
 )
-from verification.credibility.refinement_studies import (
-    Refinement,
-    failure_message,
-    refined_grid,
-    refined_mesh,
-)
+from verification.credibility.refinement_studies import Refinement, refined_grid, refined_mesh
 from verification.credibility.study_verdicts import CORRECTED, PLAIN, STAIRCASE, verdicts
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.invariants.influence_error import ConversionError, conversion_errors
 from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import CoatedContact
+from verification.running.case_result import message_of
 from verification.running.checked_files import write_checked
 from verification.running.json_records import RecordFile, decode
 from verification.running.pool.pool_task import Task
@@ -73,12 +69,12 @@ def measure() -> AccuracyStudy:
     begin = time.perf_counter()
     failures: list[str] = []
 
-    def attempt(part: str, compute: Callable[[], T], otherwise: T) -> T:
+    def attempt(part: str, compute: Callable[[], tuple[T, ...]]) -> tuple[T, ...]:
         try:
             return compute()
         except Exception as error:  # a message of the report, not a traceback
-            failures.append(f"{part}: {failure_message(error)}")
-            return otherwise
+            failures.append(f"{part}: {message_of(error)}")
+            return ()
 
     available = solvers(COATED)
     grid = partial(refined_grid, solve=available["semianalytic"])
@@ -93,27 +89,18 @@ def measure() -> AccuracyStudy:
         *(mesh(order) for order in (2, 3, 4)),
     )
     failures += [f"{r.method}, {r.solid}, {r.setting}, {r.failure}" for r in refinements if r.failure]
-    conversions: tuple[ConversionError, ...] = attempt(
-        "conversions of the influence coefficients", lambda: conversion_errors(COATED), ()
-    )
-    discs: tuple[ExactError, ...] = attempt("discs", lambda: discs_of(), ())
-    ellipses: tuple[ExactError, ...] = attempt("ellipses", lambda: tuple(turned_ellipse(BARE)), ())
+    conversions = attempt("conversions of the influence coefficients", lambda: conversion_errors(COATED))
+    discs = attempt("discs", lambda: discs_of())
+    ellipses = attempt("ellipses", lambda: tuple(turned_ellipse(BARE)))
     seconds = time.perf_counter() - begin
     return AccuracyStudy(
-        refinements,
-        conversions,
-        tuple(failures),
-        seconds,
-        commit(),
-        versions(),
-        discs,
-        ellipses,
+        refinements, conversions, tuple(failures), seconds, commit(), versions(), discs, ellipses
     )
 
 
-def discs_of(patches: int = 129) -> tuple[ExactError, ...]:
+def discs_of() -> tuple[ExactError, ...]:
     """Given pressures on both solids, Hertz's sliding on the coated one; DC-FFT; one patch of thin films."""
-    found = disc_errors(COATED, "coated", FRICTION, patches) + disc_errors(BARE, "uncoated", 0.0, patches)
+    found = disc_errors(COATED, "coated", FRICTION) + disc_errors(BARE, "uncoated", 0.0)
     return (*found, *convolution_errors(COATED, "coated"), *film_errors(COATED))
 
 
@@ -124,22 +111,22 @@ def quick() -> tuple[Invariant, ...]:
     """
     grid = partial(refined_grid, solve=solvers(COATED)["semianalytic"])
     parts: tuple[Callable[[], tuple[Invariant, ...]], ...] = (
-        lambda: verdicts((), discs_of(), ()),
-        lambda: verdicts((grid(COATED, (129,), solid="coated", setting=CORRECTED),), (), ()),
+        lambda: verdicts(errors=discs_of()),
+        lambda: verdicts([grid(COATED, (129,), solid="coated", setting=CORRECTED)]),
         lambda: verdicts(
-            (grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False),), (), ()
+            [grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False)]
         ),
-        lambda: verdicts((), turned_ellipse(BARE), ()),
+        lambda: verdicts(errors=turned_ellipse(BARE)),
     )
-    found: tuple[Invariant, ...] = ()
+    found: list[Invariant] = []
     for part in parts:
         try:
             found += part()
         except Exception as error:
-            found += verdicts((), (), (), (f"discs and ellipses: {failure_message(error)}",))
+            found += verdicts(failures=[f"discs and ellipses: {message_of(error)}"])
         if any(row.outcome is Outcome.DISAGREES for row in found):
             break
-    return found
+    return tuple(found)
 
 
 def failed(reason: str, seconds: float) -> AccuracyStudy:
@@ -147,18 +134,16 @@ def failed(reason: str, seconds: float) -> AccuracyStudy:
     return AccuracyStudy((), (), (reason,), seconds, commit(), versions())
 
 
-def stored(
-    folder: Path, source: Callable[[], str | None] = commit, packages: Callable[[], dict[str, str]] = versions
-) -> AccuracyStudy | None:
+def stored(folder: Path) -> AccuracyStudy | None:
     """The earlier study where it has no failures and is of this commit and these versions, or None.
 
     The study of a tree that was changed since its commit (marked "+") is not used: the tree may have changed
     since. Raises StoreError, naming the file, where the study is damaged.
     """
-    found, now = _FILE.read(folder), source()
+    found, now = _FILE.read(folder), commit()
     if found is None or found.failures or (now or "").endswith("+"):
         return None
-    return found if (found.commit, found.versions) == (now, packages()) else None
+    return found if (found.commit, found.versions) == (now, versions()) else None
 
 
 def task(folder: Path) -> Task[AccuracyStudy]:

@@ -23,6 +23,7 @@ from verification.sources.references.hankel_field import HankelField
 from verification.sources.references.hertz_ellipse import HertzEllipse
 from verification.sources.references.uniform_disc import UniformDisc
 
+PATCHES = 129  # a side
 UNIFORM, HERTZ = "uniform pressure", "Hertz's pressure"
 # Of the radius: beside the rim, where the stress under a uniform pressure is infinite, not on it.
 SURFACE = np.array([-1.7, -1.15, -0.97, -0.8, -0.5, -0.2, 0.0, 0.3, 0.6, 0.9, 1.02, 1.3])
@@ -33,7 +34,6 @@ INSIDE = np.array([-0.8, -0.55, -0.3, 0.0, 0.21, 0.47, 0.7])  # of the radius, o
 QUARTER = ((0.0, 0.3, 0.75, 0.2, 0.5, 0.6, 0.9, 1.0), (0.0, 0.0, 0.0, 0.7, 0.5, 0.3, 0.9, 1.0))
 SIDE = 0.07  # of a patch, over a_h
 FILMS = {"film of one patch": 1.0, "film of five patches": 5.0}  # thickness over that
-TURNED = "ellipse 2 : 1, turned"
 ANGLE = 0.4  # of the long axis from x
 BETWEEN = 0.4  # of a patch, by which the turned ellipse lies beside a patch centre
 WIDE = 1.15  # half-width of the grid over the long semi-axis
@@ -50,7 +50,7 @@ class ExactError:
     error: float
 
 
-def disc_errors(problem: CoatedContact, solid: str, friction: float, patches: int = 257) -> list[ExactError]:
+def disc_errors(problem: CoatedContact, solid: str, friction: float) -> list[ExactError]:
     """Errors under both pressures on a disc as wide as the contact of Hertz, Hertz's with ``friction``."""
     a, p_h = problem.a_h, problem.p_h
     hertz = AbelPressure(a, p_h * a / 3 * np.array([1.0, -1.0]))
@@ -59,12 +59,12 @@ def disc_errors(problem: CoatedContact, solid: str, friction: float, patches: in
         exact = HankelField(disc, problem.coatings, problem.substrate, f)
         found += [
             ExactError(name, solid, quantity, error)
-            for quantity, error in _errors(replace(problem, friction=f), exact, p_h, patches).items()
+            for quantity, error in _errors(replace(problem, friction=f), exact, p_h).items()
         ]
     return found
 
 
-def _errors(problem: CoatedContact, exact: HankelField, p_h: float, patches: int) -> dict[str, float]:
+def _errors(problem: CoatedContact, exact: HankelField, p_h: float) -> dict[str, float]:
     import semianalytic
 
     a = exact.pressure.a
@@ -75,7 +75,7 @@ def _errors(problem: CoatedContact, exact: HankelField, p_h: float, patches: int
         coatings=problem.coatings,
         substrate=problem.substrate,
         friction=problem.friction,
-        patches=patches,
+        patches=PATCHES,
         estimate_uncertainty=False,
     )
     angle = 0.35  # off the mirror planes
@@ -95,7 +95,7 @@ def _errors(problem: CoatedContact, exact: HankelField, p_h: float, patches: int
     }
     if not isinstance(exact.pressure, UniformDisc):
         i, j = (
-            np.array([[0.1, 0.3, 0.5, 0.62, 0.87], [0.5, 0.15, 0.62, 0.25, 0.94]]) * (patches - 1)
+            np.array([[0.1, 0.3, 0.5, 0.62, 0.87], [0.5, 0.15, 0.62, 0.25, 0.94]]) * (PATCHES - 1)
         ).astype(int)
         z = PLANE * a
         at = solution.nodes[i], solution.nodes[j], np.full(i.shape, z)
@@ -104,12 +104,12 @@ def _errors(problem: CoatedContact, exact: HankelField, p_h: float, patches: int
         )
         plane = solution.displacement_plane(z)[:, i, j]
         errors["displacement on a plane"] = _largest([plane - exact.displacement(*at)]) / sink
-        errors["deflection on a quarter"] = _deflection_error(problem, exact, patches) / sink
-        errors["stress of patches"] = _patch_error(problem, exact, patches) / p_h
+        errors["deflection on a quarter"] = _deflection_error(problem, exact) / sink
+        errors["stress of patches"] = _patch_error(problem, exact) / p_h
     return errors
 
 
-def _patch_error(problem: CoatedContact, exact: HankelField, patches: int) -> float:
+def _patch_error(problem: CoatedContact, exact: HankelField) -> float:
     """Largest error of the stresses [Pa] half a patch and two below the surface, off the edge.
 
     They are summed over the patches, as under a rough indenter, in place of rings around each point.
@@ -119,7 +119,7 @@ def _patch_error(problem: CoatedContact, exact: HankelField, patches: int) -> fl
     from semianalytic.inputs import Body
 
     a = exact.pressure.a
-    grid = Grid(patches, 2.04 * a / patches)
+    grid = Grid(PATCHES, 2.04 * a / PATCHES)
     mean = prescribed.patch_mean(prescribed.Prescribed(a, exact.pressure.pressure), grid.x, grid.d)
     body = Body(problem.coatings, problem.substrate, problem.friction, None)
     x, z = np.meshgrid(a * INSIDE, grid.d * np.array([0.5, 2.0]))
@@ -128,7 +128,7 @@ def _patch_error(problem: CoatedContact, exact: HankelField, patches: int) -> fl
     return _largest([patch_field.tensor(found) - exact.stress(x, y, z, 0)])
 
 
-def _deflection_error(problem: CoatedContact, exact: HankelField, patches: int) -> float:
+def _deflection_error(problem: CoatedContact, exact: HankelField) -> float:
     """Largest error [m] of the patches' deflection, as a round contact has it: held on a quarter of the grid.
 
     Influence coefficients and DC-FFT alone, off the edge, where constant patches are of third order.
@@ -138,11 +138,11 @@ def _deflection_error(problem: CoatedContact, exact: HankelField, patches: int) 
     from semianalytic.inputs import Body, Numerics
 
     a = exact.pressure.a
-    grid = Grid(patches, 2.04 * a / patches, quarter=True)
+    grid = Grid(PATCHES, 2.04 * a / PATCHES, quarter=True)
     K = influence.surface_coefficients(
-        patches, grid.d, Body(problem.coatings, problem.substrate, 0.0, None), Numerics()
+        PATCHES, grid.d, Body(problem.coatings, problem.substrate, 0.0, None), Numerics()
     )
-    x = Grid(patches, grid.d).x
+    x = Grid(PATCHES, grid.d).x
     mean = prescribed.patch_mean(prescribed.Prescribed(a, exact.pressure.pressure), x, grid.d)
     u = convolution.even_convolution(K, quarter=True)(grid.held(prescribed.deconvolve(mean)).copy())
     i, j = (np.array(QUARTER) * (len(grid.x) - 1)).astype(int)
@@ -150,7 +150,7 @@ def _deflection_error(problem: CoatedContact, exact: HankelField, patches: int) 
     return float(np.abs(u[i, j] - normal.displacement(grid.x[i], grid.x[j], 0 * grid.x[i])[2]).max())
 
 
-def convolution_errors(problem: CoatedContact, solid: str, patches: int = 31) -> list[ExactError]:
+def convolution_errors(problem: CoatedContact, solid: str) -> list[ExactError]:
     """Errors of DC-FFT against the sum over patches, on a grid loaded up to its rim, and on a quarter of it.
 
     No contact loads the patches at the rim, from which a padding that is too short wraps around.
@@ -158,7 +158,7 @@ def convolution_errors(problem: CoatedContact, solid: str, patches: int = 31) ->
     from semianalytic import convolution, influence
     from semianalytic.inputs import Body, Numerics
 
-    body = Body(problem.coatings, problem.substrate, 0.0, None)
+    patches, body = 31, Body(problem.coatings, problem.substrate, 0.0, None)
     K = influence.surface_coefficients(patches, problem.a_h / patches, body, Numerics())
     middle = patches // 2
     x = np.arange(patches) - middle
@@ -188,15 +188,14 @@ def film_errors(problem: CoatedContact) -> list[ExactError]:
     return found
 
 
-def turned_ellipse(problem: CoatedContact, patches: int = 129) -> list[ExactError]:
+def turned_ellipse(problem: CoatedContact) -> list[ExactError]:
     """Errors of a contact of the load and modulus of ``problem``, uncoated, under that load and approach."""
     import semianalytic
 
     a, b = 2**0.5 * problem.a_h, problem.a_h / 2**0.5
     exact = HertzEllipse(a, b, problem.p_h, problem.E_star)
     (A, B), c, s = exact.curvatures, np.cos(ANGLE), np.sin(ANGLE)
-
-    aside = BETWEEN * 2 * WIDE * a / patches
+    aside = BETWEEN * 2 * WIDE * a / PATCHES
 
     def height(x: Any, y: Any) -> Any:
         return A * (c * (x - aside) + s * y) ** 2 + B * (c * y - s * (x - aside)) ** 2
@@ -210,7 +209,7 @@ def turned_ellipse(problem: CoatedContact, patches: int = 129) -> list[ExactErro
             approach=approach,
             coatings=(),
             substrate=problem.substrate,
-            patches=patches,
+            patches=PATCHES,
             estimate_uncertainty=False,
         )
         errors = {
@@ -219,7 +218,7 @@ def turned_ellipse(problem: CoatedContact, patches: int = 129) -> list[ExactErro
             "approach": one.approach / exact.approach - 1 if approach is None else 0.0,
             "load": one.diagnostics.load / exact.load - 1,
         }
-        what = TURNED if approach is None else f"{TURNED}, given approach"
+        what = "ellipse 2 : 1, turned" + ("" if approach is None else ", given approach")
         found += [ExactError(what, "uncoated", name, abs(error)) for name, error in errors.items()]
     return found
 

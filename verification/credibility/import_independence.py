@@ -62,11 +62,10 @@ def imports_of(name: str, forbidden_packages: tuple[str, ...] = ()) -> Part:
         place = path.relative_to(folder).as_posix()
         for module in _imported(nodes):
             statements += 1
-            for other in forbidden_packages:
-                if module == other or module.startswith(f"{other}."):
-                    forbidden.append(f"{name}/{place} imports {module}")
-            top = module.partition(".")[0]
-            if top not in sys.stdlib_module_names and not (module + ".").startswith(f"{name}."):
+            within = f"{module}.".startswith
+            if any(within(f"{other}.") for other in forbidden_packages):
+                forbidden.append(f"{name}/{place} imports {module}")
+            if module.partition(".")[0] not in sys.stdlib_module_names and not within(f"{name}."):
                 modules.add(module)
         hidden += [f"{name}/{place} calls {called}" for called in _called_by_name(nodes)]
     return Part(name, files, statements, tuple(sorted(modules)), tuple(forbidden), tuple(hidden))

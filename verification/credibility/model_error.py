@@ -47,17 +47,12 @@ ASSUMPTIONS: dict[str, Assumption] = {
     "strains": Assumption(SMALL_STRAINS, read=of_pair),
 }
 
-
-__all__ = ["GOODMAN", "HALF_SPACES", "PARABOLA", "Cost", "ModelError", "model_error"]
-
 WORDS = {
     "contact_radius": "contact radius",
     "peak_pressure": "peak pressure",
     "tension": "tension at the trailing edge",
     "shear": "shear of the first interface",
 }
-
-
 LIMIT = 0.05  # relative; a larger cost triggers a warning
 LEAST = 1e-6  # relative; a smaller cost is not reported
 
@@ -94,9 +89,9 @@ class ModelError:
     costs: tuple[Cost, ...]
     missing: tuple[tuple[str, str], ...] = ()
 
-    def largest(self, quantities: Collection[str] = QUANTITIES) -> Cost | None:
-        """The largest cost of ``quantities``; None where nothing was evaluated."""
-        of = [cost for cost in self.costs if cost.quantity in quantities]
+    def largest(self, quantities: Collection[str] = QUANTITIES, assumption: str = "") -> Cost | None:
+        """The largest cost of ``quantities``, of one assumption or any; None where nothing was evaluated."""
+        of = [c for c in self.costs if c.quantity in quantities and assumption in ("", c.assumption)]
         return max(of, key=lambda cost: cost.size, default=None)
 
     @property
@@ -109,14 +104,6 @@ class ModelError:
     def parts(self) -> tuple[str, ...]:
         """The dominating costs, each with its assumption."""
         return tuple(one.words for one in self.dominating)
-
-    @property
-    def lesser(self) -> tuple[Cost, ...]:
-        """The largest cost of each assumption that dominates nowhere."""
-        named = {one.assumption for one in self.dominating}
-        others = dict.fromkeys(one.assumption for one in self.costs if one.assumption not in named)
-        worst = (max((c for c in self.costs if c.assumption == a), key=lambda c: c.size) for a in others)
-        return tuple(one for one in worst if one.size >= LEAST)
 
     def message(self) -> str:
         """One sentence: how good the model is."""
@@ -132,8 +119,11 @@ class ModelError:
     @property
     def notes(self) -> tuple[str, ...]:
         """A line for each assumption that dominates nowhere, for each whose cost is not known here."""
+        named = {one.assumption for one in self.dominating}
+        others = dict.fromkeys(one.assumption for one in self.costs if one.assumption not in named)
+        worst = [cost for one in others if (cost := self.largest(assumption=one)) and cost.size >= LEAST]
         unknown = (f"not known here: {assumption} ({reason})" for assumption, reason in self.missing)
-        return (*(f"less: {one.words}" for one in self.lesser), *unknown)
+        return (*(f"less: {one.words}" for one in worst), *unknown)
 
     def warnings(self, judged: Collection[str] = QUANTITIES, told: Sequence[str] = ()) -> tuple[str, ...]:
         """A line for each assumption that costs more than ``LIMIT`` of a quantity among ``judged``.
@@ -144,8 +134,7 @@ class ModelError:
         for one in ASSUMPTIONS.values():
             if one.warned and any(line.startswith(one.warned) for line in told):
                 continue
-            of = [cost for cost in self.costs if cost.assumption == one.title and cost.quantity in judged]
-            worst = max(of, key=lambda cost: cost.size, default=None)
+            worst = self.largest(judged, one.title)
             if worst is not None and worst.size > LIMIT:
                 found.append(f"{one.title} costs {_percent(worst.size)} of the {worst.name}")
         return tuple(found)
@@ -170,9 +159,8 @@ def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> M
             missing.append((assumption.title, str(error)))
             continue
         if change.tension is None:
-            missing.append(
-                (f"{assumption.title}, of the stresses", "its model has a rigid ball, no friction")
-            )
+            reason = "its model has a rigid ball, no friction"
+            missing.append((f"{assumption.title}, of the stresses", reason))
         costs += [
             Cost(assumption.title, field.name, value, getattr(uncertainty, field.name))
             for field in fields(change)

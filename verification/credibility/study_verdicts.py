@@ -16,7 +16,6 @@ of a patch, d/a = 0.009 at 257 patches:
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -26,8 +25,6 @@ from verification.judging.invariant_verdict import Invariant, absent, decide
 from verification.judging.invariants.influence_error import BOUND, ConversionError
 from verification.judging.outcome import Outcome
 
-__all__ = ["CORRECTED", "PLAIN", "STAIRCASE", "verdicts"]
-
 CORRECTED = "split conversion, corrected edge"
 # Patches alone: influence coefficients, DC-FFT, conjugate gradients against the exact solution.
 STAIRCASE = "split conversion, staircase edge"
@@ -35,34 +32,30 @@ PLAIN = "plain conversion, staircase edge"
 SOURCE = "semianalytic"
 
 
-@dataclass(frozen=True)
-class Limits:
-    """Largest error by quantity on ``patches`` a side, least order by quantity.
-
-    On fewer patches a limit is larger: by (257/patches) to the power ``falls``.
-    """
-
-    error: dict[str, float]
-    order: dict[str, float]
-    falls: dict[str, float]
-
-
-SECOND = {"p0": 2.0, "a": 2.0, "approach": 2.0, "pressure": 2.0, "stress": 2.0}
-STAIRS = SECOND | {"a": 1.0, "pressure": 1.0}
-FIXED = dict.fromkeys(SECOND, 0.0)
-OF_GRID = 257
-LIMITS = {
-    CORRECTED: Limits(
-        {"p0": 2e-6, "a": 1e-5, "approach": 2e-6, "pressure": 2e-5, "stress": 1e-5}, {"p0": 1.5}, SECOND
-    ),
-    STAIRCASE: Limits(
-        {"p0": 3e-5, "a": 2.2e-3, "approach": 3e-5, "pressure": 2e-3, "stress": 1e-4},
-        {"p0": 1.5, "approach": 1.5, "pressure": 0.8, "stress": 1.5},
-        STAIRS,
-    ),
-    PLAIN: Limits(
-        {"p0": 2e-3, "a": 5e-3, "approach": 1e-2, "pressure": 5e-3, "stress": 5e-3}, {"pressure": 0.8}, FIXED
-    ),
+# By quantity: the largest error on 257 patches a side, the power of 257/patches by which it may be larger on
+# fewer, the least order.
+LIMITS: dict[str, dict[str, tuple[float, int, float | None]]] = {
+    CORRECTED: {
+        "p0": (2e-6, 2, 1.5),
+        "a": (1e-5, 2, None),
+        "approach": (2e-6, 2, None),
+        "pressure": (2e-5, 2, None),
+        "stress": (1e-5, 2, None),
+    },
+    STAIRCASE: {
+        "p0": (3e-5, 2, 1.5),
+        "a": (2.2e-3, 1, None),
+        "approach": (3e-5, 2, 1.5),
+        "pressure": (2e-3, 1, 0.8),
+        "stress": (1e-4, 2, 1.5),
+    },
+    PLAIN: {
+        "p0": (2e-3, 0, None),
+        "a": (5e-3, 0, None),
+        "approach": (1e-2, 0, None),
+        "pressure": (5e-3, 0, 0.8),
+        "stress": (5e-3, 0, None),
+    },
 }
 RINGS, PATCHES, ROUNDING = 1e-8, 1e-6, 1e-13
 DISCS = {
@@ -87,20 +80,19 @@ OTHERS = {
 
 
 def verdicts(
-    refinements: Iterable[Refinement],
-    discs: Iterable[ExactError],
-    conversions: Iterable[ConversionError],
+    refinements: Iterable[Refinement] = (),
+    errors: Iterable[ExactError] = (),
+    conversions: Iterable[ConversionError] = (),
     failures: Iterable[str] = (),
 ) -> tuple[Invariant, ...]:
     """A verdict on each part of the method: the error of its study is below its limit."""
     found: list[Invariant] = []
-    for one in refinements:
-        if one.method == SOURCE and one.setting in LIMITS:
-            found += _of_refinement(one, LIMITS[one.setting])
-    for disc in discs:
-        of_disc = disc.quantity in DISCS
-        name = f"{disc.solid}: {'disc, ' * of_disc}{disc.pressure}: {disc.quantity}"
-        found.append(_below(name, disc.error, (DISCS if of_disc else OTHERS)[disc.quantity]))
+    for study in refinements:
+        if study.method == SOURCE and study.setting in LIMITS:
+            found += _of_refinement(study)
+    for one in errors:
+        name = f"{one.solid}: {'disc, ' * (one.quantity in DISCS)}{one.pressure}: {one.quantity}"
+        found.append(_below(name, one.error, (DISCS | OTHERS)[one.quantity]))
     for conversion in conversions:
         if conversion.conversion == "split":
             found.append(_below("coated: influence coefficients", conversion.largest, BOUND))
@@ -112,20 +104,20 @@ def verdicts(
     return tuple(found)
 
 
-def _of_refinement(one: Refinement, limits: Limits) -> list[Invariant]:
-    name = f"{one.solid}: {one.setting}"
+def _of_refinement(one: Refinement) -> list[Invariant]:
+    name, limits = f"{one.solid}: {one.setting}", LIMITS[one.setting]
     if one.failure or not one.levels:
         return [absent(name, SOURCE, one.failure or f"{name}: nothing was computed")]
     last = one.levels[-1]
-    coarser = OF_GRID / last.resolution if last.resolution else float("inf")
+    coarser = 257 / last.resolution
     found = [
-        _below(f"{name}: {q}, {last.name}", last.errors[q], limit * coarser ** limits.falls[q])
-        for q, limit in limits.error.items()
+        _below(f"{name}: {q}, {last.name}", last.errors[q], limit * coarser**power)
+        for q, (limit, power, _) in limits.items()
     ]
-    for q, least in limits.order.items():
-        order, label = one.order(q), f"{name}: order of {q}"
-        if len(one.levels) < 3:
+    for q, (_, _, least) in limits.items():
+        if least is None or len(one.levels) < 3:
             continue
+        order, label = one.order(q), f"{name}: order of {q}"
         if order is None:
             found.append(Invariant(label, SOURCE, None, None, Outcome.DISAGREES, "the error does not fall"))
             continue

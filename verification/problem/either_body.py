@@ -15,8 +15,6 @@ from verification.problem.coated_contact import (
     stress_with_uncertainty,
 )
 
-__all__ = ["on_body"]
-
 # Half a turn round z, of the two bodies' frames: u_x, u_y change sign, and so do sigma_xz, sigma_yz.
 _VECTOR = np.array([-1.0, -1.0, 1.0])
 _TENSOR = np.outer(_VECTOR, _VECTOR)
@@ -47,12 +45,11 @@ class _OnBall:
         own = relative_to_edge(self.solution)
         return self if own is self.solution else _OnBall(own)
 
-    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        return _turned(self.solution.stress(-np.asarray(x), -np.asarray(y), z, layer, body=BALL), _TENSOR)
+    def stress(self, *at: Any, **of: Any) -> Array:
+        return _turned(self._seen("stress", *at, **of), _TENSOR)
 
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        U: Array = self.solution.stress_uncertainty(-np.asarray(x), -np.asarray(y), z, layer, body=BALL)
-        return U
+    def stress_uncertainty(self, *at: Any, **of: Any) -> Array:
+        return self._seen("stress_uncertainty", *at, **of)
 
     def stress_with_uncertainty(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
@@ -60,12 +57,16 @@ class _OnBall:
         sigma, U = stress_with_uncertainty(self.solution, -np.asarray(x), -np.asarray(y), z, layer, body=BALL)
         return _turned(sigma, _TENSOR), U
 
-    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        return _turned(self.solution.displacement(-np.asarray(x), -np.asarray(y), z, body=BALL), _VECTOR)
+    def displacement(self, *at: Any) -> Array:
+        return _turned(self._seen("displacement", *at), _VECTOR)
 
-    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        U: Array = self.solution.displacement_uncertainty(-np.asarray(x), -np.asarray(y), z, body=BALL)
-        return U
+    def displacement_uncertainty(self, *at: Any) -> Array:
+        return self._seen("displacement_uncertainty", *at)
+
+    def _seen(self, field: str, x: ArrayLike, y: ArrayLike, *others: Any, **of: Any) -> Array:
+        """A field of the ball at places in its own frame."""
+        found: Array = getattr(self.solution, field)(-np.asarray(x), -np.asarray(y), *others, **of, body=BALL)
+        return found
 
 
 def _turned(field: Array, sign: Array) -> Array:

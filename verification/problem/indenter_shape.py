@@ -6,8 +6,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["SHAPES", "Indenter", "height_of", "require_shape"]
-
 Indenter = tuple[str, tuple[float, ...]]  # shape and its numbers, SI
 SHAPES = {
     "ellipsoid": ("R_x", "R_y"),

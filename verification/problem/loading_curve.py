@@ -6,15 +6,13 @@ from verification.problem.array_types import Coatings
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad
 
 CONTROLS = ("contact_radius", "approach")
-PUNCH = ("kappa", "series_over_kappa")  # quantities that need the stiffness S
 
 
 @dataclass(frozen=True)
 class LoadingCurve:
     """Rigid sphere of ``radius`` [m] where ``control``, contact_radius or approach, equals each ``at`` [m].
 
-    coatings, substrate as in CoatedContact.   punch : whether its stiffness is required.
-    Raises ValueError.
+    coatings, substrate as in CoatedContact. Raises ValueError.
     """
 
     radius: float
@@ -22,7 +20,6 @@ class LoadingCurve:
     at: tuple[float, ...]
     coatings: Coatings
     substrate: tuple[float, float]
-    punch: bool = True
 
     def __post_init__(self) -> None:
         if self.control not in CONTROLS or not self.at or not min(self.at) > 0:
@@ -32,14 +29,9 @@ class LoadingCurve:
         self.contact(1.0)
 
     @property
-    def top(self) -> tuple[float, float]:
-        """(E, nu) of the uppermost layer."""
-        return self.coatings[0][:2] if self.coatings else self.substrate
-
-    @property
     def E_star(self) -> float:
         """E1/(1 - nu1^2) [Pa] of the uppermost layer."""
-        E, nu = self.top
+        E, nu = self.coatings[0][:2] if self.coatings else self.substrate
         return E / (1 - nu**2)
 
     def contact(self, load: float) -> CoatedContact:

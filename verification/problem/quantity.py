@@ -6,7 +6,7 @@ value at a fixed point there changes by the square root of the error of the radi
 The largest tension with its place, found by each source on its own solution, has no such root.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any
@@ -80,14 +80,11 @@ class Quantity:
 
 def _tensor(
     kind: str, name: str, tex: str, unit: str, components: Sequence[str], cap: float = 1e-3
-) -> list[Quantity]:
-    return [
-        Quantity(
-            f"{name}_{c}", kind, _POINTS, f"{name}_{c}", f"{tex}_{{{c}}}", unit, "p_h", cap, component=place
-        )
-        for c in components
-        for place in [("xyz".index(c[0]), "xyz".index(c[1]))]
-    ]
+) -> Iterator[Quantity]:
+    for c in components:
+        place = "xyz".index(c[0]), "xyz".index(c[1])
+        symbol = f"{name}_{c}"
+        yield Quantity(symbol, kind, _POINTS, symbol, f"{tex}_{{{c}}}", unit, "p_h", cap, component=place)
 
 
 _AXIS, _CONTACT, _CURVE, _POINTS, _SURFACE = ("axis",), ("contact",), ("curve",), ("points",), ("surface",)
@@ -97,7 +94,7 @@ _TENSION, _PLACE = "largest sigma_xx of the surface on y = 0", "x of the largest
 _LOOSE = 5e-3  # of quantities that only published tables hold
 _SLOPE = "stiffness of the contact, the derivative of the load by the approach"
 _PUNCH = "stiffness of the flat punch over 2 a E1*"
-_LOADS, _STIFFNESSES = "load by the formula over W", "stiffness by the formula over that of the flat punch"
+_LOADS, _KAPPAS = "load by the formula over W", "stiffness by the formula over that of the flat punch"
 
 # In the order of columns, rows, claims.
 QUANTITIES: dict[str, Quantity] = {
@@ -138,18 +135,10 @@ QUANTITIES: dict[str, Quantity] = {
             meaning=f"{_PLACE} of the ball",
         ),
         Quantity("load", "curve", _CURVE, "W", "W", "N", cap=_LOOSE),
-        Quantity("kappa", "curve", _CURVE, "kappa", r"\kappa", "1", "p_h", _LOOSE, meaning=_PUNCH),
-        Quantity("series_over_load", "curve", _CURVE, "series / W", "", "1", "p_h", _LOOSE, meaning=_LOADS),
+        Quantity("kappa", "curve", _CURVE, "kappa", r"\kappa", "1", cap=_LOOSE, meaning=_PUNCH),
+        Quantity("series_over_load", "curve", _CURVE, "series / W", "", "1", cap=_LOOSE, meaning=_LOADS),
         Quantity(
-            "series_over_kappa",
-            "curve",
-            _CURVE,
-            "series / kappa",
-            "",
-            "1",
-            "p_h",
-            _LOOSE,
-            meaning=_STIFFNESSES,
+            "series_over_kappa", "curve", _CURVE, "series / kappa", "", "1", cap=_LOOSE, meaning=_KAPPAS
         ),
         Quantity("pressure", "pressure", _POINTS, "p", "p", "Pa"),
         *_tensor("stress", "sigma", r"\sigma", "Pa", ("xx", "yy", "zz", "xz", "xy", "yz")),

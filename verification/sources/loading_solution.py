@@ -6,7 +6,7 @@ stiffness of flat punches too.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import exp, log, sqrt
 
 import numpy as np
@@ -17,10 +17,6 @@ from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.loading_curve import LoadingCurve
 from verification.sources.limit_extrapolation import short_of_limit
 from verification.sources.references.flat_punch import Pressed, pressed
-
-# Step in log W of a difference quotient. Rounding and the uncertainty of the approach require a longer step,
-# the curvature a shorter one; at 1 % both errors are about 1e-5.
-STEP = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,42 +88,37 @@ def pressed_at(problem: LoadingCurve, at: float) -> tuple[float, Pressed]:
 def loading(
     problem: LoadingCurve, solve: Callable[[CoatedContact], Solution], *, limits: bool = False
 ) -> Loading:
-    """The curve by a solver of one contact under a load; S from three loads where its solution states none.
+    """The curve by a solver of one contact under a load.
 
-    limits : extrapolate to nu = 1/2 and to a rigid base, see ``extrapolation``.
+    limits : extrapolate to nu = 1/2 and to a rigid base, see ``limit_extrapolation``.
     """
-    found, count = [], 0
+    states, count = [], 0
 
     def state(contact: CoatedContact) -> tuple[Array, Array]:
         nonlocal count
         count += 1
         one = solve(contact)
-        if problem.punch and getattr(one, "stiffness", None) is None:
-            count += 2
-            return _three(contact, one, solve)
-        return _one(contact, one)
+        found = [contact.load, one.approach, one.contact_radius, one.stiffness]
+        U = one.uncertainty
+        return np.array(found), np.array([0.0, U.approach, U.contact_radius, one.stiffness_uncertainty])
 
     for at in problem.at:
         contact = problem.contact(pressed_at(problem, at)[1].load / problem.radius)
         if not limits or short_of_limit(contact, 1) == contact:
-            found.append(state(contact))
+            states.append(state(contact))
             continue
         (near, U), (further, V) = (state(short_of_limit(contact, t)) for t in (1, 2))
-        if not _incompressible(contact):
+        if 0.5 not in [contact.substrate[1], *(nu for _, nu, _ in contact.coatings)]:
             # A base in series with the layer: extrapolation linear in its compliance neglects the square of
             # its contribution; twice that for both ends of the step.
-            found.append((2 * near - further, 2 * U + V + 2 * (near - further) ** 2 / near))
+            states.append((2 * near - further, 2 * U + V + 2 * (near - further) ** 2 / near))
             continue
         third, T = state(short_of_limit(contact, 3))
         # Parabola through all three points, with the uncertainty of the straight line through two.
         bend = near - 2 * further + third
-        found.append((2 * near - further + bend, 3 * U + 3 * V + T + np.abs(bend)))
-    states, uncertainties = (np.array(column) for column in zip(*found, strict=True))
-    return Loading(problem, states, uncertainties, {"contacts": count})
-
-
-def _incompressible(contact: CoatedContact) -> bool:
-    return 0.5 in [contact.substrate[1], *(nu for _, nu, _ in contact.coatings)]
+        states.append((2 * near - further + bend, 3 * U + 3 * V + T + np.abs(bend)))
+    found, uncertainties = (np.array(column) for column in zip(*states, strict=True))
+    return Loading(problem, found, uncertainties, {"contacts": count})
 
 
 def exact_loading(problem: LoadingCurve) -> Loading:
@@ -146,31 +137,6 @@ def _exact_state(problem: LoadingCurve, a: float, one: Pressed) -> Array:
     return np.array(
         [one.load / problem.radius, one.approach / problem.radius, a, 2 * a * problem.E_star * one.kappa]
     )
-
-
-def _one(contact: CoatedContact, one: Solution) -> tuple[Array, Array]:
-    S, dS = getattr(one, "stiffness", None), getattr(one, "stiffness_uncertainty", None)
-    U = one.uncertainty
-    state = np.array([contact.load, one.approach, one.contact_radius, 1.0 if S is None else S])
-    return state, np.array([0.0, U.approach, U.contact_radius, 0.0 if dS is None else dS])
-
-
-def _three(
-    contact: CoatedContact, middle: Solution, solve: Callable[[CoatedContact], Solution]
-) -> tuple[Array, Array]:
-    """State with S = (W/delta) d log W / d log delta from a load above and one below."""
-    low, high = (solve(replace(contact, load=contact.load * exp(s))) for s in (-STEP, STEP))
-    x = np.log([low.approach, middle.approach, high.approach])
-    m = 2 * STEP / (x[2] - x[0])
-    # The second derivative of log W; the third, which the quotient neglects, is no larger.
-    bend = abs(STEP / (x[2] - x[1]) - STEP / (x[1] - x[0])) / (x[2] - x[0]) * 2
-    noise = sum(one.uncertainty.approach / one.approach for one in (low, high)) / (x[2] - x[0])
-    state, uncertainty = _one(contact, middle)
-    state[3] = m * contact.load / middle.approach
-    uncertainty[3] = state[3] * (
-        noise + bend / m * (0.5 * (x[2] - x[0])) ** 2 + uncertainty[1] / middle.approach
-    )
-    return state, uncertainty
 
 
 def _series(X: Array, coefficients: tuple[float, ...]) -> Array:

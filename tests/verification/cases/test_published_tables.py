@@ -5,7 +5,7 @@ import pytest
 
 from verification.cases.case_file import shipped_cases
 from verification.cases.published_file import is_published, published_cases, read_published
-from verification.cases.published_table import FOLDER, RECOMPUTED, PublishedError, read_table
+from verification.cases.published_table import FOLDER, RECOMPUTED, read_table
 from verification.cases.toml_file import CaseError
 from verification.problem.coated_contact import PrescribedLoad
 
@@ -168,7 +168,7 @@ def test_only_a_file_with_tables_is_taken_for_a_published_case():
 def test_row_that_is_not_there_is_named(files):
     with pytest.raises(CaseError, match=r"t\.csv"):
         files(toml=TOML.replace('file = "t.csv"', 'file = "t.csv"\nrows = { depth = 3.0 }'))
-    with pytest.raises(PublishedError, match="cannot"):
+    with pytest.raises(CaseError, match="cannot"):
         read_table(FOLDER / "absent.csv")
 
 

@@ -13,53 +13,16 @@ from synthetic_study import study
 from verification.commands import run as command
 from verification.commands.common import named_files, task_progress
 from verification.credibility import accuracy_study as accuracy_study
-from verification.credibility.accuracy_study import BARE, COATED, AccuracyStudy, from_json, to_json
+from verification.credibility.accuracy_study import BARE, COATED, from_json, to_json
 from verification.credibility.refinement_studies import (
     QUANTITIES,
     order_of,
     refined_grid,
 )
-from verification.judging.invariants.influence_error import conversion_errors
 from verification.judging.outcome import Outcome
 from verification.regression.run_exit_codes import EXIT
 from verification.running.checked_files import StoreError, write_checked
 from verification.sources.method_sources import solve_semianalytic
-
-
-@pytest.fixture(scope="module")
-def conversions():
-    return conversion_errors(COATED, patches=33, enlarge=(2, 8))
-
-
-def test_plain_conversion_errs_as_theory_says(conversions):
-    by_aliases = {
-        a: [o.error for o in conversions if (o.conversion, o.aliases) == ("plain", a)] for a in (0, 2)
-    }
-    # On the homogeneous half-space some 16 % at the loaded patch without aliases, 0.4 % with two a side.
-    assert all(0.10 < error[0] < 0.20 for error in by_aliases[0])
-    assert all(0.002 < error[0] < 0.008 for error in by_aliases[2])
-    assert all(max(error) > 0.01 for error in by_aliases[2])
-
-
-@pytest.fixture(scope="module")
-def staircase():
-    return refined_grid(COATED, (33, 65, 129), setting="staircase", edge_correction=False)
-
-
-def test_staircase_edge_leaves_the_pressure_at_first_order(staircase):
-    assert staircase.failure is None
-    assert 0.8 < staircase.order("pressure") < 1.5
-    assert staircase.order("p0") > 1.3
-    assert staircase.order("stress") > 1.5
-
-
-def test_corrected_edge_beats_the_staircase_on_the_same_grid(staircase):
-    corrected = refined_grid(COATED, (65, 129))
-    assert corrected.failure is None
-    for mine, theirs in zip(corrected.levels, staircase.levels[1:], strict=True):
-        assert mine.resolution == theirs.resolution
-        assert 100 * mine.errors["pressure"] < theirs.errors["pressure"]
-        assert 10 * mine.errors["p0"] < theirs.errors["p0"]
 
 
 def test_level_that_fails_is_a_sentence_and_the_coarser_ones_stay():
@@ -139,20 +102,21 @@ def test_study_survives_strict_json_to_the_last_bit():
         from_json(json.loads(text) | {"schema": "coatcheck-accuracy/0"})
 
 
-def kept(folder, found: AccuracyStudy, commit="a28aa40c1d2e", versions=None) -> bool:
-    write_checked(accuracy_study.path_in(folder), to_json(found))
-    packages = {"numpy": "2.4.0"} if versions is None else versions
-    return accuracy_study.stored(folder, lambda: commit, lambda: packages) == found
-
-
-def test_study_is_kept_for_the_very_same_code_only(tmp_path):
+def test_study_is_kept_for_the_very_same_code_only(tmp_path, monkeypatch):
     whole = study()
-    assert kept(tmp_path, whole)
-    assert not kept(tmp_path, whole, commit="b28aa40c1d2e")
-    assert not kept(tmp_path, whole, versions={"numpy": "2.5.0"})
+
+    def kept(found=whole, commit=whole.commit, versions=whole.versions):
+        write_checked(accuracy_study.path_in(tmp_path), to_json(found))
+        monkeypatch.setattr(accuracy_study, "commit", lambda: commit)
+        monkeypatch.setattr(accuracy_study, "versions", lambda: versions)
+        return accuracy_study.stored(tmp_path) == found
+
+    assert kept()
+    assert not kept(commit="b28aa40c1d2e")
+    assert not kept(versions={"numpy": "2.5.0"})
     # A changed tree has one mark whatever was changed.
-    assert not kept(tmp_path, replace(whole, commit="a28aa40c1d2e+"), commit="a28aa40c1d2e+")
-    assert not kept(tmp_path, study("order 3: no mesh"))
+    assert not kept(replace(whole, commit="a28aa40c1d2e+"), commit="a28aa40c1d2e+")
+    assert not kept(study("order 3: no mesh"))
     path = accuracy_study.path_in(tmp_path)
     path.write_bytes(path.read_bytes()[:-100])
     with pytest.raises(StoreError, match=r"accuracy\.json: "):

@@ -1,13 +1,16 @@
 """The parts of the method are judged: each meets its limit, and what spoils a part does not."""
 
+from contextlib import ExitStack
 from dataclasses import replace
+from functools import partial
 from types import SimpleNamespace
 
 import pytest
 from synthetic_study import study
 
-from verification.credibility import accuracy_study as accuracy_study
+from verification.credibility import accuracy_study
 from verification.credibility.exact_errors import FILMS, HERTZ, ExactError
+from verification.credibility.faults.fault_catalogue import FAULTS
 from verification.credibility.faults.fault_planting import Edit, planted
 from verification.credibility.refinement_studies import Level, Refinement
 from verification.credibility.study_verdicts import STAIRCASE, verdicts
@@ -15,6 +18,23 @@ from verification.judging.outcome import Outcome
 from verification.regression.run_exit_codes import run_code
 
 FINE = {"p0": 1e-6, "a": 1e-6, "approach": 1e-6, "pressure": 1e-4, "stress": 1e-6}
+
+AGREEING = SimpleNamespace(outcome=Outcome.AGREES)
+SAME = SimpleNamespace(less=(), unexplained=())  # a run that equals its baseline
+SLIPS = (
+    "coefficients_one_percent",
+    "remainder_doubled",
+    "edge_not_corrected",
+    "transform_normalised_by_patches",
+    "distant_offsets_cut",
+    "surface_shear_sign",
+    "boussinesq_nu",
+    "rings_one_percent",
+    "harmonics_not_multiplied",
+    "load_off",
+    "gap_recomputed_too_steep",
+    "half_space_twice",
+)
 
 
 def staircase(last=FINE):
@@ -79,27 +99,34 @@ def test_a_spoiled_part_does_not(edit, part):
     assert any(name.endswith(part) for name in bad), bad
 
 
+def test_a_dozen_plausible_slips_at_once_exit_with_1():
+    with ExitStack() as stack:
+        for name in SLIPS:
+            stack.enter_context(planted(FAULTS[name].changes))
+        studies = [row.outcome for row in accuracy_study.quick()]
+    assert run_code([AGREEING], SAME, passed=True, studies=studies) == 1
+
+
 def test_an_error_beyond_its_limit_and_an_order_below_disagree():
-    assert {row.outcome for row in verdicts([staircase()], [], [])} == {Outcome.AGREES}
-    rows = verdicts([staircase(FINE | {"p0": 1e-4, "pressure": 1e-3})], [], [])
+    assert {row.outcome for row in verdicts([staircase()])} == {Outcome.AGREES}
+    rows = verdicts([staircase(FINE | {"p0": 1e-4, "pressure": 1e-3})])
     bad = {row.name.rpartition(": ")[2] for row in rows if row.outcome is Outcome.DISAGREES}
     assert bad == {"p0, N = 257", "order of p0", "order of pressure"}
-    (disc,) = verdicts([], [ExactError(HERTZ, "coated", "stress, inside", 2e-8)], [])
+    (disc,) = verdicts(errors=[ExactError(HERTZ, "coated", "stress, inside", 2e-8)])
     assert disc.outcome is Outcome.DISAGREES
 
 
 def test_a_study_that_fails_is_no_result():
     failed = replace(staircase(), failure="N = 257: not settled")
-    outcomes = [row.outcome for row in verdicts([failed], [], [], ("discs: no grid fits",))]
+    outcomes = [row.outcome for row in verdicts([failed], failures=["discs: no grid fits"])]
     assert outcomes == [Outcome.NO_RESULT, Outcome.NO_RESULT]
 
 
 def test_the_exit_code_of_a_run_counts_the_studies():
-    fine = SimpleNamespace(less=(), unexplained=())
-    one = [SimpleNamespace(outcome=Outcome.AGREES)]
-    assert run_code(one, fine, passed=True, studies=[Outcome.AGREES]) == 0
-    assert run_code(one, fine, passed=True, studies=[Outcome.AGREES, Outcome.DISAGREES]) == 1
-    assert run_code(one, fine, passed=True, studies=[Outcome.NO_RESULT]) == 3
+    code = partial(run_code, [AGREEING], SAME, passed=True)
+    assert code(studies=[Outcome.AGREES]) == 0
+    assert code(studies=[Outcome.AGREES, Outcome.DISAGREES]) == 1
+    assert code(studies=[Outcome.NO_RESULT]) == 3
 
 
 def test_a_stored_study_is_judged_when_it_is_read_again():

@@ -60,9 +60,8 @@ def files(tmp_path):
 
 def test_a_sphere_without_a_load_is_a_loading_curve(files):
     case = files()
-    assert case.problem == LoadingCurve(
-        10e-3, "contact_radius", (1e-4, 5e-4), ((2e6, 0.3, 0.5e-3),), (1e15, 0.3), punch=True
-    )
+    layers = ((2e6, 0.3, 0.5e-3),), (1e15, 0.3)
+    assert case.problem == LoadingCurve(10e-3, "contact_radius", (1e-4, 5e-4), *layers)
     kappa, old, approach, series = case.columns
     assert kappa.at.coordinate == "a"
     assert approach.profile.value == pytest.approx(np.array([0.03, 0.6]) * 0.25e-6 / 10e-3, rel=1e-14, abs=0)
@@ -72,8 +71,6 @@ def test_a_sphere_without_a_load_is_a_loading_curve(files):
     assert old.departs.all()
     assert series.series == (1.0, 0.5)
     assert {claim.line.rsplit(" ", 1)[1] for claim in case.claims} == {"k", "old", "d", "s"}
-    plain = files(TOML.replace("kappa", "load").replace("series_over_load", "load"))
-    assert not plain.problem.punch
 
 
 def test_every_value_is_judged_and_departures_are_shown(files):

@@ -73,16 +73,3 @@ def test_displacement_passes_an_interface_and_states_its_uncertainty():
     U = coated.displacement_uncertainty(x, 0.4 * A, 0.0)
     assert U.shape == (3, 3)
     assert 0 < U.max() < 1e-8 * coated.approach
-
-
-@pytest.mark.parametrize("coatings", [(), ((4 * E, 0.2, 0.5 * A),)])
-def test_stiffness_is_the_slope_of_the_loading_curve(coatings):
-    step = 1e-4
-    low, high = (
-        integral_equation.solve(radius=R, load=W * (1 + s), coatings=coatings, substrate=STEEL)
-        for s in (-step, step)
-    )
-    found = exact(coatings, 0.0)
-    slope = 2 * step * W / (high.approach - low.approach)
-    assert found.stiffness == pytest.approx(slope, rel=1e-7)
-    assert found.stiffness_uncertainty < 1e-8 * found.stiffness

@@ -141,17 +141,6 @@ def test_deformed_contact_lies_on_the_sphere_and_balances_the_load():
 
 
 @pytest.mark.slow
-def test_radius_converges_with_the_elements_at_the_edge():
-    exact = SphereOnHalfSpace(5.0, 1.0, 1.0)
-    errors = []
-    for edge in (1e-2, 1e-3, 1e-4):
-        model = SphereContact(grid(replace(FINER, edge=edge)), 5.0, exact.load, (), (0.91, 0.3), False)
-        errors.append(model.results(model.solve()).contact_radius - 1)
-    order = np.log10(np.abs(errors[:-1]) / np.abs(errors[1:]))
-    assert order == pytest.approx(1.0, abs=0.1), errors
-
-
-@pytest.mark.slow
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.49])
 @pytest.mark.parametrize("ratio", [0.25, 10.0])
 @pytest.mark.parametrize("thickness", [0.01, 0.05, 1.0])
@@ -181,36 +170,3 @@ def test_cost_is_of_first_order_in_the_width(ratio, thickness):
     changes = [pair for pair in zip(astuple(small), astuple(large), strict=True) if None not in pair]
     for one, other in changes:
         assert np.log(other / one) / np.log(widths[1] / widths[0]) == pytest.approx(1.0, abs=0.05)
-
-
-def published_load(approach, thickness):
-    """Of a rigid sphere, R = E = 1, on an incompressible neo-Hookean layer bonded to a rigid base.
-
-    Long, Hall, Wu and Hui, Biophys. J. 101 (2011) 643-650: Hertz' load over psi, fitted to finite elements at
-    large strain. Only the abstract was read, with the range approach/h <= min(0.6, R/h), 0.3 <= R/h <= 12.7.
-    The coefficients are second-hand, of three public programs. For 0.5 <= R/h < 2 they agree but for 1.15,
-    which the R package textureAnalyzerGels has as 1.5, 6 to 8 % off; for R/h > 2 two have other constants.
-    One takes the fit for no friction, one for no slip. Its accuracy is not known.
-    """
-    h, omega = thickness, (approach / thickness**2) ** 1.5
-    alpha, beta = 10.05 - 0.63 * np.sqrt(h) * (3.1 + h**2), 4.8 - 4.23 * h**2
-    psi = (1 + 2.3 * omega) / (1 + 1.15 * np.cbrt(omega) + alpha * omega + beta * omega**2)
-    return 16 / 9 * approach**1.5 / psi
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("thickness", "load", "A", "of_small_strain"), [(2, 1.2, 0.75, 0.069), (1, 0.8, 0.7, 0.030)]
-)
-def test_soft_layer_meets_a_published_fit_where_small_strain_does_not(thickness, load, A, of_small_strain):
-    """Loads at an approach of 0.6 and 0.35 R, extrapolated to nu = 1/2; small strain with the true sphere."""
-    mesh, state = grid(Resolution(4, 1.0, 2e-3, 8.0), (thickness / A,)), None
-    excess, nu = [], [0.47, 0.48, 0.49]
-    for one in nu:
-        model = SphereContact(mesh, 1 / A, load / A**2, ((1.0, one, thickness / A),), (1e4, 0.3), True)
-        state = model.solve(state)
-        excess.append(load / published_load(state.delta * A, thickness) - 1)
-    assert np.polyval(np.polyfit(nu, excess, 2), 0.5) == pytest.approx(0.0, abs=0.012)
-    problem = CoatedContact(1.0, load, ((1.0, 0.5, thickness),), (1e9, 0.3))
-    small = integral_equation.solve(**keywords(problem), gap=SPHERE, estimate_uncertainty=False)
-    assert load / published_load(small.approach, thickness) - 1 == pytest.approx(of_small_strain, abs=1e-3)

@@ -102,14 +102,7 @@ def faults(
         trials = [fault_campaign.trial_task(fault, output) for fault in order]
         fresh = {trial.fault: trial for trial in solve(trials, jobs, time_limit, quiet or as_json)}
         info = run_info("coatcheck faults", started, jobs)
-        found = fault_campaign.record_of(
-            [kept.get(f.name) or fresh[f.name] for f in wanted],
-            started=info.started,
-            seconds=info.seconds,
-            commit=info.commit,
-            machine=f"{info.machine}, {info.jobs} jobs",
-            versions=info.versions,
-        )
+        found = fault_campaign.record_of([kept.get(f.name) or fresh[f.name] for f in wanted], info)
         write_record(output, found)
         page = output / "faults.html"
         write_atomically(page, faults_page(found))

@@ -1,4 +1,4 @@
-"""All trials of a run of ``coatcheck faults``: the clean cases they need, then one process for each fault."""
+"""All trials of a run of ``coatcheck faults``: the clean cases, one process for each fault, their record."""
 
 import time
 from collections.abc import Sequence
@@ -9,15 +9,17 @@ from typing import Any
 
 from verification.cases.case_file import Case, default_cases, read_case
 from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS
-from verification.credibility.faults.fault_outcome import row_of
 from verification.credibility.faults.fault_planting import Fault
-from verification.credibility.faults.fault_trial import Trial, try_fault
-from verification.evidence.fault_record import Record
-from verification.running.case_result import CaseResult
+from verification.credibility.faults.fault_trial import Check, Trial, try_fault
+from verification.evidence.fault_record import CAUGHT, COLUMNS, EQUIVALENT_CHANGE, Catch, Record, Row, Tally
+from verification.judging.verdict import Outcome
+from verification.running.case_result import CaseResult, RunInfo
 from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.running.json_records import decode, encode
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import fingerprint
+
+WORST_FIRST = (Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT)  # of those that do not pass
 
 
 def clean_folder(output: Path) -> Path:
@@ -66,28 +68,74 @@ def kept_trial(fault: Fault, output: Path) -> Trial | None:
     return _trial(data) if same else None
 
 
-def record_of(
-    trials: Sequence[Trial],
-    *,
-    started: str,
-    seconds: float,
-    commit: str | None,
-    machine: str,
-    versions: dict[str, str],
-) -> Record:
-    """The record of all ``trials``, controls apart."""
+def record_of(trials: Sequence[Trial], info: RunInfo) -> Record:
+    """The record of all ``trials``, controls apart, with the provenance ``info`` of their run."""
     rows = [(trial.fault, row_of((FAULTS | CONTROLS)[trial.fault], trial)) for trial in trials]
     return Record(
         rows=tuple(row for name, row in rows if name in FAULTS),
         controls=tuple(row for name, row in rows if name in CONTROLS),
-        started=started,
-        seconds=seconds,
+        started=info.started,
+        seconds=info.seconds,
         core_seconds=sum(trial.seconds for trial in trials),
-        commit=commit,
-        machine=machine,
-        versions=versions,
+        commit=info.commit,
+        machine=f"{info.machine}, {info.jobs} jobs",
+        versions=dict(info.versions),
         failing_clean=tuple(sorted({message for trial in trials for message in trial.failing_clean})),
     )
+
+
+def row_of(fault: Fault, trial: Trial) -> Row:
+    """The row of one trial: its checks counted column by column."""
+    by_column = {column: [c for c in trial.checks if c.column == column] for column in COLUMNS}
+    bad = [check for check in trial.checks if not check.passed]
+    decided = [c for c in bad if c.outcome is not Outcome.NO_RESULT]
+    predicted = [c for c in decided if c.name in fault.predicted]
+    catch = _catch(bad, fault, trial)
+    return Row(
+        fault.name,
+        fault.group,
+        fault.description,
+        fault.where,
+        catch,
+        bool(predicted),
+        _worst_message(predicted or decided or bad),
+        {column: _tally(checks) for column, checks in by_column.items() if checks},
+        trial.change,
+        trial.changed,
+        trial.seconds,
+        (*fault.cases, *fault.published),
+        trial.failure or "",
+        "" if catch in CAUGHT else fault.reason,
+        "" if catch in CAUGHT else fault.remedy,
+        fault.equivalent and catch is Catch.SURVIVED and trial.change <= EQUIVALENT_CHANGE,
+    )
+
+
+def _catch(bad: Sequence[Check], fault: Fault, trial: Trial) -> Catch:
+    if trial.failure is not None:
+        return Catch.NOT_TRIED
+    # A changed number is not in itself an error; it counts where no other check can detect the fault.
+    own = [check for check in bad if check.column != "baseline"]
+    outcomes = {check.outcome for check in own}
+    if Outcome.DISAGREES in outcomes:
+        return Catch.DISAGREES
+    if Outcome.INCONCLUSIVE in outcomes:
+        return Catch.INCONCLUSIVE
+    if "baseline" in fault.predicted and len(own) < len(bad):
+        return Catch.DRIFTED
+    return Catch.NO_RESULT if own else Catch.SURVIVED
+
+
+def _tally(checks: Sequence[Check]) -> Tally:
+    disagree, inconclusive, no_result = (sum(c.outcome is one for c in checks) for one in WORST_FIRST)
+    message = _worst_message([check for check in checks if not check.passed])
+    return Tally(len(checks), disagree, inconclusive, no_result, message)
+
+
+def _worst_message(bad: Sequence[Check]) -> str:
+    """Message of the worst check: the first disagreement, then the first inconclusive, then no result."""
+    ranked = sorted(bad, key=lambda check: WORST_FIRST.index(check.outcome))
+    return ranked[0].message if ranked else ""
 
 
 def _path(fault: Fault, output: Path) -> Path:

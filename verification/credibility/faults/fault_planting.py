@@ -12,7 +12,7 @@ import textwrap
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
 from importlib import import_module
 from types import ModuleType
 from typing import Any
@@ -81,21 +81,21 @@ def planted(changes: tuple[Edit | Constant, ...]) -> Iterator[None]:
     with ExitStack() as stack:
         stack.callback(_forget_tables)
         for change in changes:
-            owner, name = _owner(change.target)
+            owner, name = owner_of(change.target)
             if name not in vars(owner):
                 raise PlantError(
                     f"{change.target}: there is no such function; the fault no longer fits the source"
                 )
             original = vars(owner)[name]
-            places: list[tuple[Any, str]] = [(owner, name)]
+            places = [(owner, name)]
             if isinstance(change, Constant):
                 if original == change.new:
                     raise PlantError(f"{change.target} is {original!r} already; nothing would be planted")
                 changed = change.new
             else:
                 changed = _changed(original, name, change)
-                if isinstance(owner, ModuleType):
-                    places = _holders(original)
+                if isinstance(owner, ModuleType):  # functions are imported by name
+                    places = [(module, known) for module, known, value in _held() if value is original]
             for place, known in places:
                 stack.callback(setattr, place, known, original)
                 setattr(place, known, changed)
@@ -105,42 +105,29 @@ def planted(changes: tuple[Edit | Constant, ...]) -> Iterator[None]:
 
 def _forget_tables() -> None:
     """Empty the caches of all functions of the packages."""
-    for key, module in list(sys.modules.items()):
-        if key.split(".")[0] in PACKAGES:
-            for value in list(vars(module).values()):
-                if callable(clear := getattr(value, "cache_clear", None)):
-                    clear()
+    for _, _, value in _held():
+        if callable(clear := getattr(value, "cache_clear", None)):
+            clear()
 
 
-def _holders(function: Any) -> list[tuple[Any, str]]:
-    """Every module that holds ``function``, with its name there: functions are imported by name."""
-    return [
-        (module, known)
-        for key, module in list(sys.modules.items())
-        if key.split(".")[0] in PACKAGES
-        for known, value in list(vars(module).items())
-        if value is function
-    ]
+def _held() -> list[tuple[Any, str, Any]]:
+    """Every module of the packages with each name in it and what that holds."""
+    modules = [module for key, module in sys.modules.items() if key.split(".")[0] in PACKAGES]
+    return [(module, name, value) for module in modules for name, value in vars(module).items()]
 
 
-def _owner(target: str) -> tuple[Any, str]:
+def owner_of(target: str) -> tuple[Any, str]:
+    """The module or class that holds ``target``, with its name there."""
     module, _, path = target.partition(":")
     *parents, name = path.split(".")
-    owner: Any = import_module(module)
-    for parent in parents:
-        owner = getattr(owner, parent)
-    return owner, name
+    return reduce(getattr, parents, import_module(module)), name
 
 
 def _changed(original: Any, name: str, change: Edit) -> Any:
     """The function, method or property with the edit, compiled in its own module."""
     function = original
-    if isinstance(function, property):
-        function = function.fget
-    elif isinstance(function, cached_property):
-        function = function.func
-    elif isinstance(function, classmethod | staticmethod):
-        function = function.__func__
+    for attribute in ("fget", "func", "__func__"):  # of a property, a cached one, a class method
+        function = getattr(function, attribute, function)
     function = inspect.unwrap(getattr(function, "form", function))
     text = textwrap.dedent(inspect.getsource(function))
     count = text.count(change.old)

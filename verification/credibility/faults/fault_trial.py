@@ -1,4 +1,4 @@
-"""One planted fault tried against the checks of the default run."""
+"""One planted fault tried against the checks of the default run, each with its outcome."""
 
 import time
 from collections.abc import Sequence
@@ -10,41 +10,97 @@ import numpy as np
 from verification.cases.case_file import Case, default_cases, read_case
 from verification.cases.published_file import PublishedCase, published_cases, read_published
 from verification.cases.published_table import PublishedColumn
-from verification.credibility import accuracy_study as accuracy_study
-from verification.credibility.faults.default_checks import (
-    Check,
-    of_baseline,
-    of_claim,
-    of_invariant,
-    of_manifest,
-    of_self_test,
-    of_study,
-)
+from verification.credibility import accuracy_study
 from verification.credibility.faults.fault_planting import Fault, planted
-from verification.credibility.self_tests import self_tests
+from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.invariants import check as invariants_of
 from verification.judging.invariants import resolved
 from verification.judging.invariants.resolved_invariants import NAMES
-from verification.judging.verdict import Claim
+from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.coated_contact import Solution
 from verification.problem.line_profile import Profile
 from verification.problem.quantity import DISPLACEMENTS
 from verification.regression.baseline_change import State, drift, measured
-from verification.regression.manifest import differences, manifest_of
+from verification.regression.manifest import Difference, differences, manifest_message, manifest_of
 from verification.running import contact_run as run
-from verification.running import published_run as published_run
+from verification.running import published_run
 from verification.running.case_result import CaseResult, SourceResult, from_json
 from verification.running.checked_files import read_checked
 from verification.sampling.line_sampling import sample, sample_contact
 from verification.sampling.stress_plane import plane_invariants, sample_plane
 from verification.sources.source_record import Solver
-from verification.sources.source_registry import METHODS
+from verification.sources.source_registry import CLOSED, EXACT, METHODS, PUBLISHED
 
 Profiles = dict[tuple[str, str, str], Profile]
 Columns = list[tuple[PublishedColumn, np.ndarray]]  # each with the values the methods are compared with
 BESIDE = ("baseline", "manifest")  # columns that do not spare the resolved invariants, the studies
 FOR_PUBLISHED = METHODS[:1]  # published tables are compared with the faster method only
+
+
+@dataclass(frozen=True)
+class Check:
+    """``name`` is the quantity, invariant or self-test; ``detail`` its line and sources."""
+
+    column: str
+    name: str
+    case: str
+    detail: str
+    outcome: Outcome
+    reason: str
+
+    @property
+    def passed(self) -> bool:
+        return self.outcome is Outcome.AGREES
+
+    @property
+    def reports(self) -> bool:
+        """True where the check finds an error, or U above its cap; not where a source has no result."""
+        return self.outcome in (Outcome.DISAGREES, Outcome.INCONCLUSIVE)
+
+    @property
+    def compares(self) -> bool:
+        """True for a comparison with another source."""
+        return self.column.startswith(("bare", "coated"))
+
+    @property
+    def key(self) -> tuple[str, str, str, str]:
+        """What identifies the check."""
+        return self.column, self.name, self.case, self.detail
+
+    @property
+    def message(self) -> str:
+        """The check with its reason."""
+        return f"{self.name} ({', '.join(filter(None, (self.detail, self.case)))}): {self.reason}"[:400]
+
+
+def of_claim(claim: Claim, verdict: Verdict, case: str, coated: bool) -> Check:
+    """A comparison; that with a published table has a column of its own."""
+    sides = set(claim.between)
+    other = "closed form" if sides & set(CLOSED) else "exact" if sides & set(EXACT) else "methods"
+    column = PUBLISHED if PUBLISHED in sides else f"{'coated' if coated else 'bare'}, {other}"
+    detail = f"{claim.line}, {' against '.join(claim.between)}"
+    return Check(column, claim.quantity, case, detail, verdict.outcome, verdict.reason)
+
+
+def of_invariant(row: Invariant, case: str) -> Check:
+    """An invariant; its number at the end (interface 1, layer 0) belongs to the detail."""
+    name, _, place = row.name.partition(", ")
+    detail = ", ".join(filter(None, (place, row.source)))
+    return Check("invariants", name, case, detail, row.outcome, row.message)
+
+
+def of_manifest(found: Sequence[Difference], case: str) -> Check:
+    """What is judged of a case compared with the clean run."""
+    message = manifest_message([row for row in found if row.less])
+    outcome = Outcome.DISAGREES if message else Outcome.AGREES
+    return Check("manifest", "manifest", case, "what is judged", outcome, message)
+
+
+def of_self_test(test: SelfTest) -> Check:
+    """A self-test of the harness: passed or not."""
+    outcome = Outcome.AGREES if test.passed else Outcome.DISAGREES
+    return Check("self-tests", test.name, "", test.statement, outcome, test.found)
 
 
 @dataclass(frozen=True)
@@ -104,7 +160,8 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
             checks += found
             changes.append(moved)
         if _staged(fault) and not _noticed(checks):
-            checks += [of_study(row) for row in accuracy_study.quick()]
+            judged = accuracy_study.quick()
+            checks += [Check("studies", row.name, "", "", row.outcome, row.message) for row in judged]
         tests = () if fault.where in METHODS and _settled(checks, fault) else self_tests()
     checks += [of_self_test(test) for test in tests]
     failed = [test.name for test in tests if not test.passed]
@@ -175,22 +232,16 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
     def concerned(claim: Claim) -> bool:
         return not available or bool(set(claim.between) & set(solve))
 
-    verdicts = [
-        (claim, run.decide(claim, profiles, outcomes, case.problem))
-        for claim in case.claims
-        if concerned(claim)
-    ]
+    claims = [claim for claim in case.claims if concerned(claim)]
+    verdicts = [(claim, run.decide(claim, profiles, outcomes, case.problem)) for claim in claims]
     coated = bool(case.problem.coatings)
     checks += [of_claim(claim, verdict, case.name, coated) for claim, verdict in verdicts]
     now = replace(clean, verdicts=tuple(verdicts), invariants=tuple(invariants))
+    made_here = [row for row in clean.invariants if row.source in solved.solutions]
     before = replace(
         clean,
-        verdicts=tuple((claim, verdict) for claim, verdict in clean.verdicts if concerned(claim)),
-        invariants=tuple(
-            row
-            for row in clean.invariants
-            if row.source in solved.solutions and not (staged and row.name in NAMES)
-        ),
+        verdicts=tuple(one for one in clean.verdicts if concerned(one[0])),
+        invariants=tuple(row for row in made_here if not (staged and row.name in NAMES)),
     )
     checks.append(of_manifest(differences(now, manifest_of(before)), clean.name))
     return checks, fresh
@@ -212,7 +263,17 @@ def _drifts(clean: CaseResult, fresh: Profiles) -> list[Check]:
     found = {numbers.key: numbers for numbers in measured(replace(clean, profiles=now))}
     solved = {source for _, _, source in fresh}
     rows = [drift(then, found[then.key]) for then in measured(clean) if then.source in solved]
-    return [of_baseline(row, clean.name, row.state is State.SAME) for row in rows]
+    return [
+        Check(
+            "baseline",
+            "baseline",
+            clean.name,
+            f"{row.quantity} on {row.line}, {row.source}",
+            Outcome.AGREES if row.state is State.SAME else Outcome.DISAGREES,
+            row.message,
+        )
+        for row in rows
+    ]
 
 
 def _changes(clean: CaseResult, fresh: Profiles) -> list[tuple[float, str]]:
@@ -251,7 +312,7 @@ def _published(name: str, before: Columns) -> tuple[list[Check], tuple[float, st
     available = {m: s for m, s in run.solvers().items() if m in FOR_PUBLISHED}
     result = published_run.run(case, available)
     decided = [(c, v) for c, v in result.verdicts if set(c.between) & set(available)]
-    checks = [of_claim(c, v, name, False, kind="published") for c, v in decided]
+    checks = [of_claim(c, v, name, coated=False) for c, v in decided]
     change = (0.0, "nothing")
     for (old, old_value), (new, value) in zip(before, columns, strict=True):
         moved = max(

@@ -2,19 +2,7 @@
 
 from enum import StrEnum
 
-from verification.evidence.fault_record import SMALLEST_CHANGE, Record, Row
-
-__all__ = [
-    "COUNTED",
-    "METHOD",
-    "Noticed",
-    "kinds",
-    "method_score",
-    "noticed",
-    "noticed_by",
-    "of_method",
-    "unused",
-]
+from verification.evidence.fault_record import COLUMNS, SMALLEST_CHANGE, Record, Row
 
 METHOD = ("conversion_fft", "conjugate_gradients", "grids", "edge", "stress", "rings")  # groups of its faults
 
@@ -35,13 +23,7 @@ class Noticed(StrEnum):
 
 COUNTED = (Noticed.COMPARISON, Noticed.INVARIANT, Noticed.STUDY)
 _NOTICED = {
-    Noticed.COMPARISON: (
-        "bare, closed form",
-        "bare, exact",
-        "bare, methods",
-        "coated, exact",
-        "coated, methods",
-    ),
+    Noticed.COMPARISON: tuple(name for name in COLUMNS if name.startswith(("bare", "coated"))),
     Noticed.INVARIANT: ("invariants",),
     Noticed.STUDY: ("studies",),
     Noticed.HARNESS: ("published", "self-tests", "manifest"),

@@ -17,8 +17,6 @@ from verification.credibility.self_tests.known_samples import of_points_of_table
 from verification.credibility.self_tests.known_verdicts import TEST, of_enclosures, of_judging, of_points
 from verification.credibility.self_tests.stand_ins import Answers
 
-__all__ = ["SelfTest", "self_tests"]
-
 
 @dataclass(frozen=True)
 class SelfTest:
@@ -44,16 +42,13 @@ def _tried(name: str, statement: str, ask: Callable[[], Answers]) -> SelfTest:
     try:
         for what, found, wanted in ask():
             asked += 1
-            same = (
-                np.isclose(found, wanted, rtol=1e-9, atol=0) if isinstance(wanted, float) else found == wanted
-            )
-            if not same:
+            close = isinstance(wanted, float) and np.isclose(found, wanted, rtol=1e-9, atol=0)
+            if not close and found != wanted:
                 found = f"{what}: {found}, where it has to be {wanted}"
                 return SelfTest(name, statement, False, found, asked)
     except Exception as error:  # whatever a part of the harness fails with is the answer
-        return SelfTest(
-            name, statement, False, f"{type(error).__name__}: {' '.join(str(error).split())[:300]}", asked
-        )
+        message = f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
+        return SelfTest(name, statement, False, message, asked)
     return SelfTest(name, statement, True, f"{asked} known answers", asked)
 
 
@@ -68,11 +63,7 @@ _TESTS: tuple[tuple[str, str, Callable[[], Answers]], ...] = (
     ("coverage", "every line is judged over its length, in its scale, under its cap", of_coverage),
     ("invariants", "what all sources share is found by the invariants of each", of_invariants),
     ("storing", "what is stored comes back to the last digit or not at all", of_store),
-    (
-        "regression",
-        "a number that moved, a U that grew, a check that is gone are noticed",
-        of_regression,
-    ),
+    ("regression", "a number that moved, a U that grew, a check that is gone are noticed", of_regression),
     (TEST, "its values lie in proven enclosures, widened to 1e-10", of_enclosures),
     ("exit codes", "every outcome of a run ends with its code", of_codes),
     ("JUnit", "every check is a test, and what does not agree is a failure there", of_junit),

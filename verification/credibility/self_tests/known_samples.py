@@ -1,5 +1,6 @@
 """Sampling of a labelled solution: every line, the points of a table."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import cast
 
@@ -16,9 +17,21 @@ PROBLEM = CoatedContact(1e-2, 40.0, ((6e11, 0.25, 5e-5),), (3e11, 0.0), 0.25)
 COATED_BALL = replace(PROBLEM, ball=(3e11, 0.0, ((4e11, 0.2, 3e-5),)))
 
 
+# By hand, a_h = 1e-4 m: the layer of each line and the place of 3e-5 m along it.
+PLACES = {
+    "surface": (0, (3e-5, 0.0, 0.0)),
+    "axis": (None, (0.0, 0.0, 3e-5)),
+    "interface 1, upper side": (0, (3e-5, 0.0, 5e-5)),
+    "interface 1, lower side": (1, (3e-5, 0.0, 5e-5)),
+    "off plane": (None, (3e-5 * 0.8**0.5, 3e-5 * 0.2**0.5, 6e-5)),
+    "oblique": (None, (-9e-5 + 1.44e-5, -2e-5 + 1.08e-5, 2.4e-5)),
+    "oblique surface": (0, (3e-5 * 0.75**0.5, 1.5e-5, 0.0)),
+}
+
+
 def of_sampling() -> Answers:
-    solution = Labelled()
-    scalars = {p.quantity: p for p in sample_contact(cast(Solution, solution), "known", PROBLEM)}
+    solution = cast(Solution, Labelled())
+    scalars = {p.quantity: p for p in sample_contact(solution, "known", PROBLEM)}
     for name, value, U in (
         ("peak_pressure", 3e9, 2e6),
         ("contact_radius", 1e-4, 3e-9),
@@ -28,33 +41,13 @@ def of_sampling() -> Answers:
         yield name, float(scalars[name].value[0]), value
         yield f"uncertainty of the {name}", float(scalars[name].uncertainty[0]), U  # type: ignore[index]
     along = np.array([1e-5, 3e-5])
-    layers = {"surface": 0, "axis": None, "interface 1, upper side": 0, "interface 1, lower side": 1}
-    depths = {"surface": 0.0, "interface 1, upper side": 5e-5, "interface 1, lower side": 5e-5}
-    for line in lines_of(PROBLEM):
-        place = np.array([2e-5, 4e-5]) if line.name == "axis" else along
-        for profile in sample(cast(Solution, solution), "known", line, place):
+    for name, (layer, place) in PLACES.items():
+        for profile in sample(solution, "known", line_of(name, PROBLEM), along):
             if profile.quantity == "pressure":
                 yield "pressure", tuple(profile.value), (1.01e9, 1.03e9)
                 yield "its uncertainty", tuple(profile.uncertainty), (1.01e6, 1.03e6)  # type: ignore[arg-type]
                 continue
-            i, j = ("xyz".index(letter) for letter in profile.quantity[-2:])
-            x, z = (0.0, place[1]) if line.name == "axis" else (place[1], depths[line.name])
-            wanted = labelled(i, j, (x, 0.0, z), layers[line.name])
-            yield f"{profile.quantity} on the {line.name}", float(profile.value[1]), wanted
-            stated = profile.uncertainty
-            yield "its uncertainty", None if stated is None else float(stated[1]), 1e-3 * wanted
-    # by hand: a_h = 1e-4 m; the line, its layer, the second point
-    for name, layer, point in (
-        ("off plane", None, (3e-5 * 0.8**0.5, 3e-5 * 0.2**0.5, 6e-5)),
-        ("oblique", None, (-9e-5 + 1.44e-5, -2e-5 + 1.08e-5, 2.4e-5)),
-        ("oblique surface", 0, (3e-5 * 0.75**0.5, 1.5e-5, 0.0)),
-    ):
-        for profile in sample(cast(Solution, solution), "known", line_of(name, PROBLEM), along):
-            if profile.quantity.startswith("u_"):
-                wanted = moved("xyz".index(profile.quantity[-1]), point)
-            else:
-                i, j = ("xyz".index(letter) for letter in profile.quantity[-2:])
-                wanted = labelled(i, j, point, layer)
+            wanted = _known(profile.quantity, place, layer)
             yield f"{profile.quantity} on the line {name}", float(profile.value[1]), wanted
             stated = profile.uncertainty
             yield "its uncertainty", None if stated is None else float(stated[1]), 1e-3 * wanted
@@ -62,12 +55,16 @@ def of_sampling() -> Answers:
     for line in (*lines_of(COATED_BALL), *oblique_lines(COATED_BALL)):
         if line.body != BALL:
             continue
-        there = (float(v[1]) for v in np.broadcast_arrays(*line.points(along)))
-        point = next(there), next(there), next(there)
-        for profile in sample(cast(Solution, solution), "known", line, along):
-            i, *rest = ("xyz".index(letter) for letter in profile.quantity.partition("_")[2])
-            wanted = ON_BALL * (labelled(i, rest[0], point, line.layer) if rest else moved(i, point))
+        there = [float(v[1]) for v in np.broadcast_arrays(*line.points(along))]
+        for profile in sample(solution, "known", line, along):
+            wanted = ON_BALL * _known(profile.quantity, there, line.layer)
             yield f"{profile.quantity} on the line {line.name}", float(profile.value[1]), wanted
+
+
+def _known(quantity: str, place: Sequence[float], layer: int | None) -> float:
+    """The labelled stress or displacement called ``quantity``."""
+    i, *others = ("xyz".index(letter) for letter in quantity.partition("_")[2])
+    return float(labelled(i, others[0], place, layer) if others else moved(i, place))
 
 
 def of_points_of_tables() -> Answers:
@@ -76,19 +73,15 @@ def of_points_of_tables() -> Answers:
     at = Points.of(x, y, z, PROBLEM.coatings, None, "m", 1.0)
     solution = cast(Solution, Labelled())
     places = list(zip(x.tolist(), y.tolist(), z.tolist(), strict=True))
-    sigma = [
-        [[labelled(i, j, place, layer) for j in range(3)] for i in range(3)]
-        for layer, place in enumerate(places)
-    ]
-    wanted = {f"sigma_{'xyz'[i]}{'xyz'[j]}": [s[i][j] for s in sigma] for i in range(3) for j in range(i, 3)}
+    names = [f"sigma_{c}" for c in ("xx", "xy", "xz", "yy", "yz", "zz")] + [f"u_{c}" for c in "xyz"]
+    wanted = {name: [_known(name, place, layer) for layer, place in enumerate(places)] for name in names}
     xx, yy, zz = (np.array(wanted[f"sigma_{c}{c}"]) for c in "xyz")
     E, nu = np.array([6e11, 3e11]), np.array([0.25, 0.0])
     wanted |= {"sigma_kk": (xx + yy + zz).tolist(), "sigma_zz - sigma_xx": (zz - xx).tolist()}
     wanted["eps_xx"] = ((xx - nu * (yy + zz)) / E).tolist()
     wanted["eps_zz"] = ((zz - nu * (xx + yy)) / E).tolist()
     wanted["pressure"] = (1e9 + 1e12 * x + 3e12 * y).tolist()
-    wanted |= {f"u_{c}": [moved(i, place) for place in places] for i, c in enumerate("xyz")}
-    wanted |= {"approach": [1e-6, 1e-6]}
+    wanted["approach"] = [1e-6, 1e-6]
     for quantity, both in wanted.items():
         found, U = values(solution, quantity, at, PROBLEM)
         for layer in (0, 1):

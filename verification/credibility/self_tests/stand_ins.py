@@ -1,6 +1,6 @@
 """Closed forms that stand in for a method: right, off, vague, incomplete, or labelled."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,17 +26,13 @@ class Stated(Hamilton):
         return Uncertainty(share * self.contact_radius, share * self.approach, share * self.peak_pressure)
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        return np.full(np.broadcast_shapes(np.shape(x), np.shape(y)), self.share * self.peak_pressure)
+        return np.full_like(self.pressure(x, y), self.share * self.peak_pressure)
 
-    def stress_uncertainty(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
-    ) -> Array:
-        shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))
-        return np.full((3, 3, *shape), self.share * self.peak_pressure)
+    def stress_uncertainty(self, *at: Any, **of: Any) -> Array:
+        return np.full_like(self.stress(*at, **of), self.share * self.peak_pressure)
 
-    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
-        shape = np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))
-        return np.full((3, *shape), self.share * self.approach)
+    def displacement_uncertainty(self, *at: Any, **of: Any) -> Array:
+        return np.full_like(self.displacement(*at, **of), self.share * self.approach)
 
     @property
     def stiffness_uncertainty(self) -> float:
@@ -61,9 +57,7 @@ class Misplaced(Stated):
     low: tuple[float, float, float] = (0.0, 0.0, 0.0)
     high: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
-    def stress(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
-    ) -> Array:
+    def stress(self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = FLAT) -> Array:
         at = np.broadcast_arrays(*(np.asarray(v, dtype=float) / self.contact_radius for v in (x, y, z)))
         inside = [(b <= v) & (v <= t) for b, v, t in zip(self.low, at, self.high, strict=True)]
         return super().stress(x, y, z, layer) + 0.01 * self.peak_pressure * np.all(inside, axis=0)
@@ -72,27 +66,25 @@ class Misplaced(Stated):
 class Failing(Stated):
     """A method that has a contact but no stresses."""
 
-    def stress(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
-    ) -> Array:
+    def stress(self, *at: Any, **of: Any) -> Array:
         raise ValueError("no stresses today")
 
 
 ON_BALL = 1.5  # every labelled number of the ball over that of the flat
 
 
-def labelled(i: int, j: int, place: tuple[float, float, float], layer: int | None) -> float:
-    """A stress that tells its component, place and layer."""
+def labelled(i: int, j: int, place: Sequence[Any], layer: int | None) -> Any:
+    """A stress that tells its component, place and layer; numbers or arrays."""
     low, high = sorted((i, j))
     x, y, z = place
     component = 1e6 * (1 + 3 * low + high)
-    return float(component + 1e9 * x + 7e9 * y + 3e9 * z + 1e7 * (-1 if layer is None else layer))
+    return component + 1e9 * x + 7e9 * y + 3e9 * z + 1e7 * (-1 if layer is None else layer)
 
 
-def moved(i: int, place: tuple[float, float, float]) -> float:
+def moved(i: int, place: Sequence[Any]) -> Any:
     """A displacement that tells its component and place."""
     x, y, z = place
-    return float(1e-7 * (1 + i) + 1e-3 * x + 7e-3 * y + 3e-3 * z)
+    return 1e-7 * (1 + i) + 1e-3 * x + 7e-3 * y + 3e-3 * z
 
 
 class Labelled:
@@ -108,25 +100,17 @@ class Labelled:
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         return 1e-3 * self.pressure(x, y)
 
-    def stress(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
-    ) -> Array:
-        places = np.stack(np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z))), axis=-1)
-        at = [
-            [[labelled(i, j, tuple(place), layer) for place in places.tolist()] for j in range(3)]
-            for i in range(3)
-        ]
-        return np.array(at) * (1 if body == FLAT else ON_BALL)
+    def stress(self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = FLAT) -> Array:
+        at = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+        sigma = np.array([[labelled(i, j, at, layer) for j in range(3)] for i in range(3)])
+        return sigma * (1 if body == FLAT else ON_BALL)
 
-    def stress_uncertainty(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
-    ) -> Array:
-        return 1e-3 * self.stress(x, y, z, layer, body)
+    def stress_uncertainty(self, *at: Any, **of: Any) -> Array:
+        return 1e-3 * self.stress(*at, **of)
 
-    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
-        places = np.stack(np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z))), axis=-1)
-        at = np.array([[moved(i, tuple(place)) for place in places.tolist()] for i in range(3)])
-        return at * (1 if body == FLAT else ON_BALL)
+    def displacement(self, x: Any, y: Any, z: Any, body: str = FLAT) -> Array:
+        at = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+        return np.array([moved(i, at) for i in range(3)]) * (1 if body == FLAT else ON_BALL)
 
-    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
-        return 1e-3 * self.displacement(x, y, z, body)
+    def displacement_uncertainty(self, *at: Any, **of: Any) -> Array:
+        return 1e-3 * self.displacement(*at, **of)
