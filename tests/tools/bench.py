@@ -1,10 +1,10 @@
 """A sphere on a homogeneous half-space solved by ``semianalytic.indent``, timed beside other codes.
 
-The contact is not periodic, on the square [-2, 2]^2 of N x N patches; lengths are in contact radii, moduli in
-E*. It is solved by ``semianalytic.indent``, by the Polonsky-Keer solver of tamaas with its DC-FFT operator, by
-aspher as it is fastest (nested grids, FFT operator, FFT preconditioner). Each has the tolerance with which it
-just meets ``LIMIT``; all measure their own gap, over their own scale. Every solver returns the pressures of the
-patches, (N, N).
+The contact is not periodic, on the square [-2, 2]^2 of N x N patches; lengths are in contact radii, moduli
+in E*. It is solved by ``semianalytic.indent``, by the Polonsky-Keer solver of tamaas with its DC-FFT
+operator, by aspher as it is fastest (nested grids, FFT operator, FFT preconditioner). Each has the
+tolerance with which it just meets ``LIMIT``; all measure their own gap, over their own scale. Every solver
+returns the pressures of the patches, (N, N).
 
 As a program: times one of them, whose name, patches a side and threads are its arguments.
 """
