@@ -1,5 +1,6 @@
 """The picture of the README as SVG, drawn from the numbers of the baseline."""
 
+from operator import attrgetter
 from typing import Any
 
 import matplotlib as mpl
@@ -16,7 +17,6 @@ from verification.sources.source_registry import EXACT, SOURCES
 # Okabe and Ito's colours, distinct for the colour-blind; markers tell the sources apart in grey too.
 COLOURS = {"semianalytic": "#0072B2", "fem_reference": "#D55E00", "integral_equation": "#222222"}
 MARKERS = {"semianalytic": "o", "fem_reference": "x"}
-OTHER = "#009E73"
 LEAST = 1e-14  # a smaller difference is drawn here
 SETTINGS: Any = {
     "font.size": 8.5,
@@ -114,31 +114,31 @@ def _curve(
 
 def _distances(axes: Any, result: CaseResult) -> None:
     """The largest |A - B| of each pair in each group as a dot, its U as a bar, the cap as a line."""
-    rows = []
-    for label, names, line in GROUPS:
-        found = [
+    groups = [
+        [
             pair
             for pair in result.verdicts
-            if pair[0].quantity.startswith(names) and pair[0].line.removeprefix("ball, ").startswith(line)
+            if pair[0].quantity.startswith(names) and pair[0].line.startswith(line)
         ]
-        rows += [(label, found)] if found else []
-    for y, (_, found) in enumerate(rows):
+        for _, names, line in GROUPS
+    ]
+    for y, found in enumerate(groups):
         sets = list(dict.fromkeys(claim.between for claim, _ in found))
         for i, between in enumerate(sets):
             of_set = [verdict for claim, verdict in found if claim.between == between]
-            worst = max(of_set, key=lambda verdict: verdict.difference or 0.0)
+            worst = max(of_set, key=attrgetter("difference"))
             offset = y + 0.26 * ((i + 0.5) / len(sets) - 0.5) * 2
-            colour, U = _colour(between), max(worst.uncertainty or 0.0, LEAST)
+            colour, U = _colour(between), max(worst.uncertainty, LEAST)
             axes.plot([LEAST, U], [offset, offset], color=colour, lw=2.2, alpha=0.25, solid_capstyle="butt")
-            axes.plot(max(worst.difference or 0.0, LEAST), offset, "o", color=colour, markersize=3.6)
+            axes.plot(max(worst.difference, LEAST), offset, "o", color=colour, markersize=3.6)
         cap = min(claim.cap for claim, _ in found)
         axes.plot([cap, cap], [y - 0.4, y + 0.4], color="#c02a2a", lw=1.2, ls=(0, (3, 1.5)))
     axes.set_xscale("log")
-    axes.set(xlim=(LEAST, 3e-2), ylim=(len(rows) - 0.4, -0.6), xlabel="over the scale of the comparison")
-    axes.set_yticks(range(len(rows)), [label for label, _ in rows])
+    axes.set(xlim=(LEAST, 3e-2), ylim=(len(groups) - 0.4, -0.6), xlabel="over the scale of the comparison")
+    axes.set_yticks(range(len(groups)), [label for label, *_ in GROUPS])
     axes.grid(visible=False, axis="y")
     axes.set_title("Largest difference (dot), $U$ (bar), cap (dashed)", fontsize=9, loc="left")
-    shown = dict.fromkeys(claim.between for _, found in rows for claim, _ in found)
+    shown = dict.fromkeys(claim.between for found in groups for claim, _ in found)
     handles = [mpl.lines.Line2D([], [], marker="o", ls="", ms=3.6, color=_colour(pair)) for pair in shown]
     axes.legend(
         handles,
@@ -157,7 +157,7 @@ def _distances(axes: Any, result: CaseResult) -> None:
 def _colour(between: tuple[str, str]) -> str:
     if set(between) == {"semianalytic", "fem_reference"}:
         return "#CC79A7"
-    return COLOURS.get(between[0], OTHER)
+    return COLOURS.get(between[0], "#009E73")
 
 
 def _name(between: tuple[str, str]) -> str:
