@@ -115,15 +115,10 @@ def test_failing_worker_leaves_the_earlier_file_and_does_not_pass_it_off_as_its_
     assert read_checked(nothing.path) == {"said": "earlier"}
 
 
-def grouped(how: str, folder: Path, number: int = 0) -> Task[str]:
-    return replace(task(how, folder, number), together="one process")
-
-
 def test_tasks_together_run_in_one_process_which_a_failed_one_alone_leaves(tmp_path):
     hows = ["process", "process", "abort", "process", "process"]
-    first, second, died, third, fourth = run_tasks(
-        [grouped(how, tmp_path, n) for n, how in enumerate(hows)], jobs=2, time_limit=300
-    )
+    tasks = [replace(task(how, tmp_path, n), together="one process") for n, how in enumerate(hows)]
+    first, second, died, third, fourth = run_tasks(tasks, jobs=2, time_limit=300)
     assert first == second
     assert re.fullmatch(REASONS["abort"], died)
     assert third == fourth

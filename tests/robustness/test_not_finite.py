@@ -45,9 +45,6 @@ class Place:
     def method(self) -> str:
         return self.module.partition(".")[0]
 
-    def __str__(self) -> str:
-        return f"{self.module}.{self.name}" + (f" [{self.part}]" if self.part is not None else "")
-
 
 PLACES = (
     Place("semianalytic.frf", "compliance_excess"),

@@ -2,7 +2,6 @@
 
 import functools
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +18,7 @@ from verification.problem.quantity import (
     SLOPES,
     STRESSES,
 )
-from verification.running.case_result import CaseResult, RunInfo, SourceResult
+from verification.running.case_result import CaseResult, RunInfo, SourceResult, describe
 from verification.running.contact_run import decide
 from verification.sources.source_registry import CLOSED, METHODS, SOURCES
 
@@ -110,7 +109,7 @@ def result_of(
         name=name,
         title=title,
         source="O'Sullivan and King, J. Tribol. 110 (1988) 235-240",
-        problem=described(problem),
+        problem=describe(problem),
         sources=sources,
         profiles=tuple(profiles.values()),
         verdicts=verdicts,
@@ -119,27 +118,11 @@ def result_of(
     )
 
 
-def described(problem: CoatedContact) -> dict[str, Any]:
-    """The record of the problem that a result carries."""
-    return {
-        "radius": problem.radius,
-        "load": problem.load,
-        "coatings": [list(layer) for layer in problem.coatings],
-        "substrate": list(problem.substrate),
-        "friction": problem.friction,
-        "a_h": problem.a_h,
-        "p_h": problem.p_h,
-        "delta_h": problem.delta_h,
-        "S_h": problem.S_h,
-        "interfaces": list(problem.interfaces),
-    }
-
-
 def crashed(problem: CoatedContact, name: str, reason: str) -> CaseResult:
     """A case whose process died before it had anything to show."""
     verdicts = tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in standard_claims(problem))
     source = (SourceResult("case", 1.0, reason),)
-    return CaseResult(name, name.title(), "", described(problem), source, (), verdicts, 1.0)
+    return CaseResult(name, name.title(), "", describe(problem), source, (), verdicts, 1.0)
 
 
 def _exact(problem: CoatedContact, source: str, points: int) -> list[Profile]:
