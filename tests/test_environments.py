@@ -1,16 +1,15 @@
 """Commands of the README and the manual, each in an environment with exactly the extras that its line names.
 
-The environments are built once, in COATCHECK_ENVIRONMENTS or build/environments, for each content of
-constraints.txt and pyproject.toml. Long commands run on one case, see ``QUICK``. Names of tests contain the
-extras, or none, so that ``-k none`` runs one environment alone: continuous integration takes turns.
+Long commands run on one case, see ``QUICK``. Names of tests contain the extras, or none, so that ``-k none``
+runs one environment alone: continuous integration takes turns.
 """
 
-import hashlib
 import os
 import re
 import shlex
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -19,7 +18,6 @@ from verification.cli import COMMANDS
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "verification" / "manual" / "source").glob("*.md"))]
-KEPT = Path(os.environ.get("COATCHECK_ENVIRONMENTS", ROOT / "build" / "environments"))
 LINE = re.compile(r"^(?:\| `|    |\$ )?((?:[^`|\n]*&& *)?(?:\.venv/bin/)?coatcheck [^`|\n]*)", re.MULTILINE)
 EXTRAS = re.compile(r"pip install .*?-e '?\.(?:\[([\w,]+)\])?'?")
 # What takes minutes is run in part; what waits for a person or writes the baseline is not run.
@@ -52,17 +50,14 @@ def commands() -> list[tuple[str, str]]:
     return list(found)
 
 
+@cache
 def environment(extras: str) -> Path:
-    """The programs of an environment with ``extras``, made where it is not there yet."""
-    content = [(ROOT / name).read_bytes() for name in ("constraints.txt", "pyproject.toml")]
-    key = hashlib.sha256(b"".join(content) + sys.version.encode() + str(ROOT).encode()).hexdigest()[:12]
-    place = KEPT / f"{extras or 'none'}-{key}"
-    if not (place / "complete").exists():
-        subprocess.run([sys.executable, "-m", "venv", "--clear", str(place)], check=True)
-        named = f"{ROOT}[{extras}]" if extras else str(ROOT)
-        words = [place / "bin" / "pip", "install", "-q", "-c", ROOT / "constraints.txt", "-e", named]
-        subprocess.run(words, check=True)
-        (place / "complete").touch()
+    """The programs of a new environment with ``extras``."""
+    place = ROOT / "build" / "environments" / (extras or "none")
+    subprocess.run([sys.executable, "-m", "venv", "--clear", place], check=True)
+    named = f"{ROOT}[{extras}]" if extras else ROOT
+    words = [place / "bin" / "pip", "install", "-q", "-c", ROOT / "constraints.txt", "-e", named]
+    subprocess.run(words, check=True)
     return place / "bin"
 
 

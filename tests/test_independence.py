@@ -36,20 +36,3 @@ def test_import_contracts_are_kept():
         timeout=120,
     )
     assert done.returncode == 0, done.stdout
-
-
-@pytest.mark.parametrize(
-    ("package", "strangers"),
-    [
-        ("semianalytic", ("fem_reference", "verification", "skfem", "gmsh")),
-        ("fem_reference", ("semianalytic", "verification", "ducc0")),
-        (
-            "verification.sources.references.integral_equation",
-            ("semianalytic", "fem_reference", "skfem", "gmsh"),
-        ),
-    ],
-)
-def test_each_part_is_usable_alone(package, strangers):
-    code = f"import sys, {package}; sys.exit(' '.join(m for m in {strangers!r} if m in sys.modules) or None)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0, f"importing {package} also brings {done.stderr}"

@@ -1,4 +1,4 @@
-"""Extreme solids: the contact is found within its uncertainty; beyond the extremes it is refused."""
+"""Extreme solids: the contact is found within its uncertainty."""
 
 import pytest
 
@@ -38,12 +38,3 @@ def test_extreme_solids_are_solved_within_their_uncertainty(name):
         error = abs(getattr(found, quantity) - getattr(exact, quantity))
         # twice: an estimate from two meshes
         assert error <= 2 * getattr(found.uncertainty, quantity), quantity
-
-
-@pytest.mark.parametrize(
-    ("solid", "message"), [(coated(2e4), "E of coating 1"), (coated(1.0, nu=0.5), "nu of coating 1")]
-)
-def test_solids_beyond_the_extremes_are_refused_with_one_message(solid, message):
-    with pytest.raises(ValueError, match=message) as refused:
-        solve(**solid)
-    assert "\n" not in str(refused.value)

@@ -10,10 +10,11 @@ E, NU = 210e9, 0.3
 A, P = 1e-4, 1e9
 
 
-def test_uniform_disc_follows_the_closed_form_on_the_axis():
+@pytest.mark.parametrize("coatings", [(), ((E, NU, A / 3),) * 2], ids=["bare", "equal layers"])
+def test_uniform_disc_follows_the_closed_form_on_the_axis(coatings):
     """Boussinesq's disc, K. L. Johnson, Contact Mechanics, (3.33) and (3.29a)."""
     s = solve_prescribed(
-        pressure=P, load_radius=A, coatings=(), substrate=(E, NU), estimate_uncertainty=False
+        pressure=P, load_radius=A, coatings=coatings, substrate=(E, NU), estimate_uncertainty=False
     )
     t = np.linspace(0, 3, 31)
     sigma = s.stress(0.0, 0.0, t * A)
@@ -25,17 +26,6 @@ def test_uniform_disc_follows_the_closed_form_on_the_axis():
     assert s.approach == pytest.approx(2 * (1 - NU**2) * P * A / E, rel=5e-6)
     assert s.contact_radius == A
     assert s.peak_pressure == pytest.approx(P)
-
-
-def test_equal_layers_are_invisible():
-    whole = solve_prescribed(pressure=P, load_radius=A, coatings=(), substrate=(E, NU), quality="fast")
-    layered = solve_prescribed(
-        pressure=P, load_radius=A, coatings=((E, NU, A / 3),) * 2, substrate=(E, NU), quality="fast"
-    )
-    x, z = np.linspace(-2, 2, 21) * A, 0.5 * A
-    # both meshes are good to 1e-3 of the pressure
-    assert np.abs(whole.stress(x, 0.0, z) - layered.stress(x, 0.0, z)).max() < 2e-3 * P
-    assert layered.approach == pytest.approx(whole.approach, rel=5e-5)
 
 
 def test_response_is_linear_in_the_pressure():

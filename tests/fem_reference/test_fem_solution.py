@@ -159,6 +159,7 @@ def test_a_change_from_the_companion_counts_by_roaches_factor_more_on_coarse_tri
 def test_forces_out_of_balance_count_as_load():
     one, s = contact(), solved("sphere")
     (none, least), (some, stiffness) = estimated(one), estimated(one, residual=1e-3)
+    # W ~ a^2 at least; p ~ W^(1/3)
     shares = {"contact_radius": 1 / 2, "approach": 1, "peak_pressure": 1 / 3}
     for name, share in shares.items():
         more = some[name, "load balance"] - none[name, "load balance"]
@@ -185,14 +186,6 @@ def test_each_cause_adds_to_the_uncertainty():
         assert one.pressure.radius_error == one.normal.radius_error == radius_error
         far_and_load = rows["peak_pressure", "outer boundary"] + rows["peak_pressure", "load balance"]
         assert one.pressure.everywhere * unit.pressure == pytest.approx(far_and_load)
-    # W ~ a^2 at least; p ~ W^(1/3)
-    assert budget(load)["contact_radius", "load balance"] == pytest.approx(
-        1e-3 / 2 * s.contact_radius, rel=1e-6, abs=0
-    )
-    assert budget(load)["approach", "load balance"] == pytest.approx(1e-3 * s.approach, rel=1e-6, abs=0)
-    assert budget(load)["peak_pressure", "load balance"] == pytest.approx(
-        1e-3 / 3 * s.peak_pressure, rel=1e-6
-    )
     assert load.normal.relative - none.normal.relative == pytest.approx(1.5e-3)
     assert edge.normal.radius_error - none.normal.radius_error == pytest.approx(SAFETY * 1e-3)
     assert size.normal.radius_error > none.normal.radius_error

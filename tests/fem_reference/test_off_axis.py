@@ -14,7 +14,12 @@ E, NU, F = 210e9, 0.3, 0.25
 STEEL = (E, NU)
 A = 1e-4
 COATINGS = ((4 * E, 0.2, 0.4 * A),)
-QUICK = {"harmonics": 8, "size": 0.3, "far": 100.0}
+
+
+def checked(pressure, **changes):
+    quick = {"harmonics": 8, "size": 0.3, "far": 100.0, "estimate_uncertainty": False}
+    given = {"pressure": pressure, "reach": A, "coatings": COATINGS, "substrate": STEEL}
+    return check_pressure(**given | quick | changes)
 
 
 def ellipsoid(a, b, p0=1e9):
@@ -56,10 +61,7 @@ def test_a_harmonic_between_those_solved_is_interpolated():
 
 
 def test_sliding_gives_the_tractions_of_the_product_with_the_direction():
-    given = {"coatings": COATINGS, "substrate": STEEL, "friction": F, "harmonics": 6}
-    found = check_pressure(
-        pressure=ellipsoid(A, 0.8 * A), reach=A, size=0.4, far=100.0, estimate_uncertainty=False, **given
-    )
+    found = checked(ellipsoid(A, 0.8 * A), friction=F)
     sigma = found.stress(0.3 * A, 0.2 * A, 0.0)
     p = found.pressure(0.3 * A, 0.2 * A)
     np.testing.assert_allclose(sigma[2], [-F * p, 0.0, -p], atol=1e-9 * p)
@@ -69,15 +71,7 @@ def test_sliding_gives_the_tractions_of_the_product_with_the_direction():
 def test_an_indenter_of_hertz_leaves_no_gap_in_the_mean(ratio, within):
     exact = HertzEllipse(A, ratio * A, 1e9, E / (1 - NU**2))
     p, q = exact.curvatures
-    found = check_pressure(
-        pressure=ellipsoid(A, ratio * A),
-        reach=A,
-        coatings=(),
-        substrate=STEEL,
-        harmonics=14,
-        size=0.2,
-        estimate_uncertainty=False,
-    )
+    found = checked(ellipsoid(A, ratio * A), coatings=(), harmonics=14, size=0.2, far=1000.0)
     assert found.load == pytest.approx(exact.load, rel=3e-5)
     approach = found.approach_of(lambda x, y: p * x**2 + q * y**2)
     assert approach == pytest.approx(exact.approach, rel=within)
@@ -88,16 +82,13 @@ def test_an_indenter_of_hertz_leaves_no_gap_in_the_mean(ratio, within):
 
 def test_exchanging_the_axes_exchanges_those_of_the_stress():
     x, y, z = A * np.array([[0.1, 0.4, -0.9], [0.3, -0.2, 0.5], [0.3, 0.5, 1.0]])
-    solid = {"reach": A, "coatings": COATINGS, "substrate": STEEL, **QUICK, "estimate_uncertainty": False}
-    one = check_pressure(pressure=ellipsoid(A, 0.6 * A), **solid).stress(x, y, z)
-    other = check_pressure(pressure=ellipsoid(0.6 * A, A), **solid).stress(y, x, z)
+    one = checked(ellipsoid(A, 0.6 * A)).stress(x, y, z)
+    other = checked(ellipsoid(0.6 * A, A)).stress(y, x, z)
     np.testing.assert_allclose(one, other[[1, 0, 2]][:, [1, 0, 2]], rtol=0, atol=1e-6 * 1e9)
 
 
 def test_three_lobes_turn_by_a_third_of_a_circle():
-    found = check_pressure(
-        pressure=three_lobes, reach=A, coatings=COATINGS, substrate=STEEL, **QUICK, estimate_uncertainty=False
-    )
+    found = checked(three_lobes)
     angle = 0.3 + 2 * np.pi / 3 * np.arange(3)
     u = found.displacement(0.6 * A * np.cos(angle), 0.6 * A * np.sin(angle), 0.2 * A)[2]
     assert np.ptp(u) < 1e-9 * np.abs(u).max()
@@ -140,4 +131,4 @@ def test_friction_is_that_of_a_prescribed_load():
 )
 def test_a_pressure_that_does_not_fit_is_refused(pressure, named):
     with pytest.raises(ValueError, match=named):
-        check_pressure(pressure=pressure, reach=A, coatings=(), substrate=STEEL, **QUICK)
+        checked(pressure, coatings=())

@@ -8,8 +8,6 @@ from typing import Any
 
 from hypothesis import strategies as st
 
-__all__ = ["dump", "garbled", "keys_of", "malformed"]
-
 LARGEST = 1.7976931348623157e308
 STRANGE = [
     "",

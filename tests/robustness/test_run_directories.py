@@ -3,16 +3,16 @@
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import subprocess
-import sys
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 import pytest
+from malformed import keys_of
 from quick_case import COMMAND, QUICK, coatcheck_process
 
 from verification.cases.case_file import parse_case
@@ -85,7 +85,6 @@ def test_two_hundred_damaged_files_are_named_and_computed_again(tmp_path, stored
         replace(task, work=partial(shutil.copyfile, origin / "cases" / task.path.name, task.path))
         for task in (case_task(c, folder) for c in cases)
     ]
-    count = 0
     for turn in range(10):
         files = [
             result_path(folder, c) if (n + turn) % 3 else plane_path(folder, c.name)
@@ -104,9 +103,6 @@ def test_two_hundred_damaged_files_are_named_and_computed_again(tmp_path, stored
         shutil.rmtree(folder / "planes")
         shutil.copytree(origin / "planes", folder / "planes")
         assert content(folder) == content(origin)
-        count += len(files)
-    assert count == 200
-    sys.stdout.write(f"{count} damaged files, all named and computed again\n")
 
 
 def test_result_of_another_file_version_or_case_is_not_kept(tmp_path, stored):
@@ -125,20 +121,13 @@ def test_result_of_another_file_version_or_case_is_not_kept(tmp_path, stored):
         kept_result(folder, second)
 
 
-def parts(node: object, path: tuple = ()) -> Iterator[tuple]:
-    items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
-    for key, value in items:
-        yield (*path, key)
-        yield from parts(value, (*path, key))
-
-
 def test_result_of_a_stranger_is_read_or_refused_but_never_trips(stored):
     folder, cases = stored
     payload = read_checked(result_path(folder, cases[0]))
     rng = random.Random(8)
-    places = [place for place in parts(payload) if len(place) < 6]
+    places = [place for place in keys_of(payload) if len(place) < 6]
     text = json.dumps(payload)
-    count = {"read": 0, "refused": 0}
+    refused = 0
     for _ in range(300):
         data = json.loads(text)
         *path, last = rng.choice(places)
@@ -150,11 +139,8 @@ def test_result_of_a_stranger_is_read_or_refused_but_never_trips(stored):
         try:
             to_json(from_json(data))
         except ValueError:
-            count["refused"] += 1
-        else:
-            count["read"] += 1
-    assert count["refused"] > 100
-    sys.stdout.write(f"300 results of strangers: {count['read']} read, {count['refused']} refused\n")
+            refused += 1
+    assert refused > 100
 
 
 def test_what_was_cut_off_or_put_in_twice_is_refused(tmp_path):
@@ -222,13 +208,6 @@ def test_half_written_files_of_a_killed_run_are_cleared_and_others_left(tmp_path
     assert all(path.exists() for path in mine)
 
 
-def one_sentence(done: subprocess.CompletedProcess, said: str) -> None:
-    assert done.returncode == 2, done.stderr
-    assert done.stderr.startswith("coatcheck: ")
-    assert done.stderr.count("\n") == 1, done.stderr
-    assert said in done.stderr
-
-
 def test_limit_on_file_size_is_one_sentence_and_the_earlier_results_stay(tmp_path):
     # What a full disk does, on any machine: no file may grow beyond 60 kB, which a result exceeds.
     (tmp_path / "quick.toml").write_text(QUICK)
@@ -241,7 +220,8 @@ def test_limit_on_file_size_is_one_sentence_and_the_earlier_results_stay(tmp_pat
         resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
 
     done = coatcheck_process("run", "quick.toml", "-q", "-o", "out", cwd=tmp_path, preexec_fn=small)
-    one_sentence(done, "File too large")
+    assert done.returncode == 2, done.stderr
+    assert re.fullmatch("coatcheck: .*File too large.*\n", done.stderr)
     found = content(tmp_path / "out")
     assert {name: found[name] for name in earlier} == earlier
     assert found.keys() - earlier <= {".lock", "cases/quick.json", "planes/quick.json"}
@@ -268,7 +248,6 @@ def test_of_eight_runs_at_once_one_works_and_the_others_say_why_not(tmp_path):
     assert all(said.startswith("coatcheck: out: ") and said.count("\n") == 1 for said in refused)
     assert read_checked(tmp_path / "out" / "cases" / "quick.json")["outcome"] == "AGREES"
     assert json.loads((tmp_path / "out" / "report.json").read_text())
-    sys.stdout.write(f"8 runs at once: {len(worked)} worked, {len(refused)} said why not\n")
 
 
 def test_result_of_every_published_case_is_known_as_its_own(tmp_path):

@@ -11,9 +11,9 @@ sys.path.insert(0, HERE)
 os.environ["PYTHONPATH"] = os.pathsep.join((HERE, os.environ.get("PYTHONPATH", "")))  # for child processes
 
 app = App(name="tests/tools", help=__doc__, help_format="plaintext")
-app.command("bench.command:bench")
-app.command("open_digits_made.command:vectors")
-app.command("assumption_maps_made.command:assumptions")
+app.command("bench:bench")
+app.command("open_digits_made.making:vectors")
+app.command("assumption_maps_made.measuring:assumptions")
 app.command("tour_recording:tour")
 app.command("result_picture:picture")
 

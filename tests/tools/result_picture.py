@@ -1,6 +1,6 @@
 """The picture of the README as SVG, drawn from the numbers of the baseline."""
 
-from pathlib import Path
+from operator import attrgetter
 from typing import Any
 
 import matplotlib as mpl
@@ -11,15 +11,12 @@ from matplotlib.patches import Rectangle
 from verification.manual.baseline_numbers import stored
 from verification.manual.generated_blocks import SOURCE
 from verification.page.number_text import engineering, plain
-from verification.report.tables.case_lookup import contact_radius, layers
 from verification.running.case_result import CaseResult
 from verification.sources.source_registry import EXACT, SOURCES
 
 # Okabe and Ito's colours, distinct for the colour-blind; markers tell the sources apart in grey too.
 COLOURS = {"semianalytic": "#0072B2", "fem_reference": "#D55E00", "integral_equation": "#222222"}
 MARKERS = {"semianalytic": "o", "fem_reference": "x"}
-OTHER = "#009E73"
-PALETTE = ("#222222", "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 LEAST = 1e-14  # a smaller difference is drawn here
 SETTINGS: Any = {
     "font.size": 8.5,
@@ -47,53 +44,52 @@ GROUPS = (
 )
 
 
-def picture(name: str = "14_ratio_4_sliding") -> int:
-    """Section, pressure with sigma_xx of the surface, sigma_xx below, differences of a contact case."""
-    result = stored(name)
+def picture() -> int:
+    """Section, pressure and sigma_xx of the surface, sigma_xx of the interface, differences of a case."""
+    result = stored("14_ratio_4_sliding")
     with mpl.rc_context(SETTINGS):
         figure = Figure(figsize=(8.6, 6.8))
         (section, surface), (below, distances) = figure.subplots(2, 2)
         figure.subplots_adjust(0.075, 0.12, 0.985, 0.955, wspace=0.34, hspace=0.3)
         _section(section, result)
-        _curve(surface, result, "pressure", "surface", PALETTE[3], "$p$")
-        _curve(surface, result, "sigma_xx", "surface", PALETTE[0], "$\\sigma_{xx}$")
+        _curve(surface, result, "pressure", "surface", "#009E73", "$p$")
+        _curve(surface, result, "sigma_xx", "surface", "#222222", "$\\sigma_{xx}$")
         surface.set(xlim=(-2, 2), xlabel="$x / a_h$", ylabel="over $p_h$")
         surface.set_title("Surface: exact —, semi-analytical ○, elements ×", fontsize=9, loc="left")
         surface.legend(frameon=False, loc="best")
-        _below(below, result)
+        _curve(below, result, "sigma_xx", "interface 1, upper side", "#222222", "interface 1")
+        _curve(below, result, "sigma_xx", "interface 1, lower side", "#222222", "", "--")
+        below.set(xlim=(-2, 2), xlabel="$x / a_h$", ylabel="$\\sigma_{xx} / p_h$")
+        title = "$\\sigma_{xx}$ at each interface: above it (full), below it (dashed)"
+        below.set_title(title, fontsize=9, loc="left")
+        below.legend(frameon=False, fontsize=7, loc="best")
         _distances(distances, result)
-        path: Path = SOURCE / "_static" / "result.svg"
+        path = SOURCE / "_static" / "result.svg"
         figure.savefig(path, format="svg", metadata={"Date": None, "Creator": None})
     return 0
 
 
 def _section(axes: Any, result: CaseResult) -> None:
-    """Layers of the flat to scale in z/a_h, a layer too thin to see drawn thicker; the contact above them."""
+    """Coating and substrate to scale in z/a_h; the contact above them."""
     problem, a_h = result.problem, result.problem["a_h"]
-    a = float(contact_radius(result) or np.nan) / a_h
-    found = [(E, nu, h / a_h) for E, nu, h in layers(result)]
-    deepest = max(1.8, 1.35 * sum(h for *_, h in found[:-1]))
-    moduli = np.log([E for E, *_ in found])
-    shade = 0.9 - 0.35 * (moduli - moduli.min()) / (np.ptp(moduli) or 1.0)
+    a = result.profile_of["contact_radius", "contact", "integral_equation"].value[0] / a_h
+    ((E, nu, h),) = problem["coatings"]
+    deepest = max(1.8, 1.35 * h / a_h)
     axes.set(xlim=(-2, 2), ylim=(deepest, -0.42 * deepest), ylabel="$z / a_h$", xlabel="$x / a_h$")
     axes.grid(visible=False)
-    top, named = 0.0, -np.inf
-    for i, (E, nu, h) in enumerate(found):
-        height = min(max(h, 0.012 * deepest), deepest - top)
-        axes.add_patch(Rectangle((-2, top), 4, height, facecolor=str(shade[i]), edgecolor="#444", lw=0.6))
-        text = f"$E$ {engineering(E, 'Pa', 3)}, $\\nu$ {plain(nu, 3)}"
-        text += "" if h == np.inf else f", $h$ {engineering(h * a_h, 'm', 3)}"
-        named = max(top + min(height / 2, 0.11 * deepest), named + 0.085 * deepest)
-        axes.annotate(text, (-1.93, named), va="center", fontsize=7.5)
-        top += height
+    coating = f"$E$ {engineering(E, 'Pa', 3)}, $\\nu$ {plain(nu, 3)}, $h$ {engineering(h, 'm', 3)}"
+    E, nu = problem["substrate"]
+    substrate = f"$E$ {engineering(E, 'Pa', 3)}, $\\nu$ {plain(nu, 3)}"
+    layers = (0.0, h / a_h, "0.55", coating), (h / a_h, deepest - h / a_h, "0.9", substrate)
+    for top, height, shade, text in layers:
+        axes.add_patch(Rectangle((-2, top), 4, height, facecolor=shade, edgecolor="#444", lw=0.6))
+        axes.annotate(text, (-1.93, top + min(height / 2, 0.11 * deepest)), va="center", fontsize=7.5)
     x = np.linspace(-2, 2, 200)
     ball = np.where(np.abs(x) < a, 0.0, -0.11 * deepest * (x**2 - a**2))
-    ball = np.maximum(ball, -0.4 * deepest)
     inside = ball > -0.4 * deepest
     axes.plot(x[inside], ball[inside], color="#444", lw=1.4)
     axes.plot([-a, a], [0, 0], color="#b03a2e", lw=3, solid_capstyle="butt")
-    kind = "elastic ball" if problem["ball"] else "rigid sphere"
-    axes.text(0, -0.36 * deepest, f"{kind}, $R$ {engineering(problem['radius'], 'm', 3)}", ha="center")
+    axes.text(0, -0.36 * deepest, f"rigid sphere, $R$ {engineering(problem['radius'], 'm', 3)}", ha="center")
     axes.text(0, -0.26 * deepest, f"$W$ {engineering(problem['load'], 'N', 3)}", ha="center")
     axes.text(0, -0.05 * deepest, f"$2a$ = {2 * a:.3g} $a_h$", ha="center", color="#b03a2e", fontsize=7.5)
     axes.set_title("The problem (sphere not to scale)", fontsize=9, loc="left")
@@ -103,69 +99,46 @@ def _curve(
     axes: Any, result: CaseResult, quantity: str, line: str, colour: str, label: str, style: str = "-"
 ) -> None:
     """A quantity over p_h along a line: a curve of the exact solution, a few markers of both methods."""
-    a_h, p_h = result.problem["a_h"], result.problem["p_h"]
     for i, source in enumerate(("integral_equation", *MARKERS)):
-        found = result.profile_of.get((quantity, line, source))
-        if found is None:
-            continue
+        found = result.profile_of[quantity, line, source]
         order = np.argsort(found.position)
+        if i:
+            order = order[np.linspace(0, len(order) - 1, 25).astype(int)[i - 1 :: 2]]
+        x, y = found.position[order] / result.problem["a_h"], found.value[order] / result.problem["p_h"]
         if i == 0:
-            x, y = found.position[order] / a_h, found.value[order] / p_h
             axes.plot(x, y, style, color=colour, lw=1.1, label=label)
-            continue
-        place = order[np.linspace(0, len(order) - 1, 25).astype(int)[i - 1 :: 2]]
-        x, y = found.position[place] / a_h, found.value[place] / p_h
-        open_ = {"markersize": 4.2, "markerfacecolor": "none", "markeredgewidth": 1.0}
-        axes.plot(x, y, MARKERS[source], color=COLOURS[source], **open_)
-
-
-def _below(axes: Any, result: CaseResult) -> None:
-    """sigma_xx on both sides of every interface; of an uncoated solid the stresses of the axis."""
-    coatings = result.problem["coatings"]
-    for i in range(len(coatings)):
-        colour, name = PALETTE[i % len(PALETTE)], f"interface {i + 1}"
-        _curve(axes, result, "sigma_xx", f"{name}, upper side", colour, name)
-        _curve(axes, result, "sigma_xx", f"{name}, lower side", colour, "", "--")
-    if coatings:
-        axes.set(xlim=(-2, 2), xlabel="$x / a_h$", ylabel="$\\sigma_{xx} / p_h$")
-        title = "$\\sigma_{xx}$ at each interface: above it (full), below it (dashed)"
-    else:
-        for colour, name in zip(PALETTE, ("sigma_xx", "sigma_zz"), strict=False):
-            _curve(axes, result, name, "axis", colour, f"$\\sigma_{{{name[-2:]}}}$")
-        axes.set(xlabel="$z / a_h$", ylabel="over $p_h$")
-        title = "On the axis"
-    axes.set_title(title, fontsize=9, loc="left")
-    if axes.get_legend_handles_labels()[1]:
-        axes.legend(frameon=False, fontsize=7, loc="best")
+        else:
+            open_ = {"markersize": 4.2, "markerfacecolor": "none", "markeredgewidth": 1.0}
+            axes.plot(x, y, MARKERS[source], color=COLOURS[source], **open_)
 
 
 def _distances(axes: Any, result: CaseResult) -> None:
     """The largest |A - B| of each pair in each group as a dot, its U as a bar, the cap as a line."""
-    rows = []
-    for label, names, line in GROUPS:
-        found = [
+    groups = [
+        [
             pair
             for pair in result.verdicts
-            if pair[0].quantity.startswith(names) and pair[0].line.removeprefix("ball, ").startswith(line)
+            if pair[0].quantity.startswith(names) and pair[0].line.startswith(line)
         ]
-        rows += [(label, found)] if found else []
-    for y, (_, found) in enumerate(rows):
+        for _, names, line in GROUPS
+    ]
+    for y, found in enumerate(groups):
         sets = list(dict.fromkeys(claim.between for claim, _ in found))
         for i, between in enumerate(sets):
             of_set = [verdict for claim, verdict in found if claim.between == between]
-            worst = max(of_set, key=lambda verdict: verdict.difference or 0.0)
+            worst = max(of_set, key=attrgetter("difference"))
             offset = y + 0.26 * ((i + 0.5) / len(sets) - 0.5) * 2
-            colour, U = _colour(between), max(worst.uncertainty or 0.0, LEAST)
+            colour, U = _colour(between), max(worst.uncertainty, LEAST)
             axes.plot([LEAST, U], [offset, offset], color=colour, lw=2.2, alpha=0.25, solid_capstyle="butt")
-            axes.plot(max(worst.difference or 0.0, LEAST), offset, "o", color=colour, markersize=3.6)
+            axes.plot(max(worst.difference, LEAST), offset, "o", color=colour, markersize=3.6)
         cap = min(claim.cap for claim, _ in found)
         axes.plot([cap, cap], [y - 0.4, y + 0.4], color="#c02a2a", lw=1.2, ls=(0, (3, 1.5)))
     axes.set_xscale("log")
-    axes.set(xlim=(LEAST, 3e-2), ylim=(len(rows) - 0.4, -0.6), xlabel="over the scale of the comparison")
-    axes.set_yticks(range(len(rows)), [label for label, _ in rows])
+    axes.set(xlim=(LEAST, 3e-2), ylim=(len(groups) - 0.4, -0.6), xlabel="over the scale of the comparison")
+    axes.set_yticks(range(len(groups)), [label for label, *_ in GROUPS])
     axes.grid(visible=False, axis="y")
     axes.set_title("Largest difference (dot), $U$ (bar), cap (dashed)", fontsize=9, loc="left")
-    shown = dict.fromkeys(claim.between for _, found in rows for claim, _ in found)
+    shown = dict.fromkeys(claim.between for found in groups for claim, _ in found)
     handles = [mpl.lines.Line2D([], [], marker="o", ls="", ms=3.6, color=_colour(pair)) for pair in shown]
     axes.legend(
         handles,
@@ -184,7 +157,7 @@ def _distances(axes: Any, result: CaseResult) -> None:
 def _colour(between: tuple[str, str]) -> str:
     if set(between) == {"semianalytic", "fem_reference"}:
         return "#CC79A7"
-    return COLOURS.get(between[0], OTHER)
+    return COLOURS.get(between[0], "#009E73")
 
 
 def _name(between: tuple[str, str]) -> str:

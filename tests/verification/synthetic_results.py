@@ -2,14 +2,13 @@
 
 import functools
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 
 from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Outcome, Verdict
 from verification.problem.coated_contact import CoatedContact
-from verification.problem.line_profile import Line, Profile, lines_of, oblique_lines
+from verification.problem.line_profile import Profile, lines_of, oblique_lines
 from verification.problem.quantity import (
     DISPLACEMENTS,
     IN_PLANE,
@@ -19,9 +18,9 @@ from verification.problem.quantity import (
     SLOPES,
     STRESSES,
 )
-from verification.running.case_result import CaseResult, RunInfo, SourceResult
+from verification.running.case_result import CaseResult, RunInfo, SourceResult, describe
 from verification.running.contact_run import decide
-from verification.sources.source_registry import CLOSED, SOURCES
+from verification.sources.source_registry import CLOSED, METHODS, SOURCES
 
 STEEL = (210e9, 0.3)
 INFO = RunInfo(
@@ -37,6 +36,7 @@ INFO = RunInfo(
 ERRORS = {name: 0.0 if name in CLOSED else 1e-10 for name in SOURCES}
 ERRORS |= {"semianalytic": 1.5e-5, "fem_reference": 1.2e-6}
 STATED = 2.5
+BUDGET = {"patch or element size": 1.9, "conversion or order": 0.5, "domain": 0.1}  # of the error
 
 
 def contact(*coatings: tuple[float, float, float], substrate=STEEL, friction: float = 0.0) -> CoatedContact:
@@ -93,9 +93,12 @@ def result_of(
             0.7 + number,
             failures.get(source),
             {"iterations": 31, "residual": 3.2e-11, "history": [10.0**-n for n in range(12)]},
-            tuple((q, k, s * errors[source]) for q in SCALARS for k, s in _knobs(problem, q))
-            if source in ("semianalytic", "fem_reference")
-            else (),
+            tuple(
+                (name, setting, share * errors[source] * getattr(problem, QUANTITIES[name].scale))
+                for name in SCALARS
+                for setting, share in BUDGET.items()
+                if source in METHODS
+            ),
         )
         for number, source in enumerate(names)
     )
@@ -106,7 +109,7 @@ def result_of(
         name=name,
         title=title,
         source="O'Sullivan and King, J. Tribol. 110 (1988) 235-240",
-        problem=described(problem),
+        problem=describe(problem),
         sources=sources,
         profiles=tuple(profiles.values()),
         verdicts=verdicts,
@@ -115,36 +118,11 @@ def result_of(
     )
 
 
-def described(problem: CoatedContact) -> dict[str, Any]:
-    """The record of the problem that a result carries."""
-    return {
-        "radius": problem.radius,
-        "load": problem.load,
-        "coatings": [list(layer) for layer in problem.coatings],
-        "substrate": list(problem.substrate),
-        "friction": problem.friction,
-        "a_h": problem.a_h,
-        "p_h": problem.p_h,
-        "delta_h": problem.delta_h,
-        "S_h": problem.S_h,
-        "interfaces": list(problem.interfaces),
-    }
-
-
 def crashed(problem: CoatedContact, name: str, reason: str) -> CaseResult:
     """A case whose process died before it had anything to show."""
     verdicts = tuple((claim, Verdict(Outcome.NO_RESULT, reason)) for claim in standard_claims(problem))
     source = (SourceResult("case", 1.0, reason),)
-    return CaseResult(name, name.title(), "", described(problem), source, (), verdicts, 1.0)
-
-
-def _knobs(problem: CoatedContact, quantity: str) -> list[tuple[str, float]]:
-    size = getattr(problem, QUANTITIES[quantity].scale)
-    return [
-        ("patch or element size", 1.9 * size),
-        ("conversion or order", 0.5 * size),
-        ("domain", 0.1 * size),
-    ]
+    return CaseResult(name, name.title(), "", describe(problem), source, (), verdicts, 1.0)
 
 
 def _exact(problem: CoatedContact, source: str, points: int) -> list[Profile]:
@@ -160,41 +138,20 @@ def _exact(problem: CoatedContact, source: str, points: int) -> list[Profile]:
     tension = ((1 - 2 * nu) / 3 + problem.friction * np.pi * (4 + nu) / 8) * p0
     for name, value in zip(PEAKS, (tension, -a), strict=True):
         found.append(Profile(name, "contact", origin, np.array([value]), source))
-    for line in lines_of(problem):
-        position = np.linspace(
-            0 if line.depth is None else -2 * a, 3 * a if line.depth is None else 2 * a, points
-        )
-        fields = _fields(line, position / a, nu, problem, points)
+    for line in (*lines_of(problem), *oblique_lines(problem)):
+        position = np.linspace(0 if line.depth is None else -2 * a, 2 * a, points)
+        bell = 1 / (1 + (position / a) ** 2)
+        quantities = dict.fromkeys(IN_PLANE, -p0)
+        if line.depth is None:
+            quantities["sigma_xz"] = 0.0  # on the axis, by symmetry
+        if line.name.startswith("o"):
+            quantities = dict.fromkeys(STRESSES, -p0) if line.name != "oblique surface" else {}
+            quantities |= dict.fromkeys(DISPLACEMENTS, problem.delta_h)
         if line.name == "surface":
             pressure = p0 * np.sqrt(np.maximum(1 - (position / a) ** 2, 0))
             found.append(Profile("pressure", line.name, position, pressure, source))
-        found += [Profile(n, line.name, position, p0 * fields[n], source) for n in IN_PLANE]
-    for line in oblique_lines(problem):
-        position = np.linspace(0, 2 * a, points)
-        bell = 1 / (1 + (position / a) ** 2)
-        quantities = dict.fromkeys(STRESSES, -p0) if line.name != "oblique surface" else {}
-        quantities |= dict.fromkeys(DISPLACEMENTS, problem.delta_h)
         found += [Profile(n, line.name, position, size * bell, source) for n, size in quantities.items()]
     return found
-
-
-def _fields(
-    line: Line, s: np.ndarray, nu: float, problem: CoatedContact, points: int
-) -> dict[str, np.ndarray]:
-    if line.depth is None:
-        lateral = -(1 + nu) * (1 - s * np.arctan2(1, s)) + 0.5 / (1 + s**2)
-        return dict(sigma_xx=lateral, sigma_yy=lateral, sigma_zz=-1 / (1 + s**2), sigma_xz=np.zeros(points))
-    # Off the axis the report only needs curves of the right look.
-    depth = 0.3 + line.depth / problem.a_h
-    layers = [*problem.coatings, (*problem.substrate, 0.0)]
-    jump = layers[line.layer or 0][0] / problem.substrate[0]
-    bell = 1 / (1 + (s**2 + depth**2)) ** 1.5
-    return dict(
-        sigma_xx=jump * bell * (s**2 - 0.4),
-        sigma_yy=jump * bell * (0.3 * s**2 - 0.5),
-        sigma_zz=-bell,
-        sigma_xz=-1.2 * s * bell * depth,
-    )
 
 
 def showcase(points: int = 129) -> list[CaseResult]:

@@ -20,20 +20,11 @@ from scipy.special import spence
 
 @dataclass(frozen=True)
 class SphereOnHalfSpace:
-    """Sphere of ``radius`` [m] in contact over ``contact_radius`` [m] < R; ``E_star`` [Pa] of both bodies.
-
-    Raises ValueError where the contact is not narrower than the sphere.
-    """
+    """Sphere of ``radius`` [m] in contact over ``contact_radius`` [m] < R; ``E_star`` [Pa] of both bodies."""
 
     radius: float
     contact_radius: float
     E_star: float
-
-    def __post_init__(self) -> None:
-        if not 0 < self.contact_radius < self.radius:
-            raise ValueError(
-                f"contact_radius = {self.contact_radius:g} m; the sphere's radius is {self.radius:g} m"
-            )
 
     @property
     def _artanh(self) -> float:

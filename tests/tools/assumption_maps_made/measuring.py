@@ -1,17 +1,70 @@
 """The maps of the assumptions, measured place by place."""
 
+import datetime
+import time
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
+from rich.console import Console
 
 from assumption_maps_made.map_axes import MEASURED
+from verification.commands.common.known_folders import RECORDS
+from verification.commands.common.shared_options import Flag
+from verification.commands.common.task_progress import run_info
+from verification.commands.common.terminal import named_table, print_out
+from verification.commands.common.terminal_bar import progress_bar
 from verification.credibility.model_error import ASSUMPTIONS, QUANTITIES
-from verification.evidence.assumption_maps import AssumptionMap, AssumptionMaps, Axis, Place
+from verification.evidence.assumption_maps import (
+    WORDS,
+    AssumptionMap,
+    AssumptionMaps,
+    Axis,
+    Place,
+    read_maps,
+    write_maps,
+)
 from verification.running.case_result import RunInfo
 from verification.sources.assumptions.contact_change import Change
 
 DIGITS = 5
+
+
+def assumptions(*names: str, record: Flag = False) -> int:
+    """Measure the cost of each assumption that all sources share, by models that drop it one at a time.
+
+    Args:
+        names: Assumptions, of sphere, goodman, bodies, strains; all of them unless given.
+        record: Store each map beside those of the other assumptions.
+    """
+    table = named_table("assumption", "quantity", "largest change", *WORDS.values())
+    for name in names or MEASURED:
+        new = _measured(name)
+        if record:
+            write_maps(RECORDS, with_map(read_maps(RECORDS) or AssumptionMaps(()), new))
+        for i, quantity in enumerate(new.quantities):
+            table.add_row(name, quantity, *_worst(new, i))
+    print_out(table)
+    return 0
+
+
+def _measured(name: str) -> AssumptionMap:
+    started, began = datetime.datetime.now(datetime.UTC), time.process_time()
+    places = list(MEASURED[name].places())
+    with progress_bar(Console(stderr=True)) as bar:
+        found = [measure(name, place) for place in bar.track(places, description=name)]
+    info = run_info(f"tests/tools assumptions {name}", started, 1)
+    return assembled(name, found, replace(info, seconds=round(time.process_time() - began, 1)))
+
+
+def _worst(one: AssumptionMap, quantity: int) -> tuple[str, ...]:
+    """The largest change of a quantity with its place, "any" of what it is independent of."""
+    size = np.abs(one.change[quantity])
+    if np.isnan(size).all():
+        return ("-",) * (1 + len(WORDS))
+    where = np.unravel_index(int(np.nanargmax(size)), size.shape)
+    at = {axis.name: f"{axis.values[i]:g}" for axis, i in zip(one.axes, where, strict=True)}
+    return (f"{one.change[quantity][where]:+.2e}", *(at.get(name, "any") for name in WORDS))
 
 
 def with_map(maps: AssumptionMaps, new: AssumptionMap) -> AssumptionMaps:

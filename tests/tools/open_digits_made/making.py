@@ -1,4 +1,4 @@
-"""The open digits computed, then checked by both methods on random samples; may be stopped to go on later."""
+"""Make the open digits anew: every problem solved exactly, random samples checked by both methods."""
 
 import json
 from collections.abc import Callable
@@ -8,39 +8,50 @@ from typing import Any
 
 import numpy as np
 
-from open_digits_made.content import data_set, vector
+from open_digits_made.content import data_set, packed, vector
 from open_digits_made.problems import ELLIPSES, SEED, VectorProblem, problems
 from open_digits_made.values import compared, exact_rows
+from verification.commands.common.terminal import print_out
+from verification.guests.vectors import open_digits
 from verification.running.checked_files import write_atomically
 from verification.running.provenance import machine, versions
 from verification.sources.source_registry import METHODS, SOURCES
 
 
-def make(
-    folder: Path, samples: dict[str, int], progress: Callable[[str], None] = lambda line: None
-) -> dict[str, Any]:
+def vectors(folder: Path = Path("vectors"), /, *, semianalytic: int = 250, elements: int = 60) -> int:
+    """Solve every problem of the open digits and write the data set, which takes minutes.
+
+    Args:
+        folder: Directory to write to; each problem is kept in its folder work, so that a run can go on.
+        semianalytic: How many problems the semi-analytical method checks.
+        elements: How many problems the finite elements check.
+    """
+    content = make(folder / "work", {"semianalytic": semianalytic, "fem_reference": elements})
+    write_atomically(folder / open_digits.FILE.name, packed(content))
+    return 0
+
+
+def make(folder: Path, samples: dict[str, int]) -> dict[str, Any]:
     """The whole data set; each problem is kept in ``folder`` as soon as it is solved.
 
     samples : how many problems, drawn at random, each method checks; it checks every ellipse.
     """
     chosen = problems()
-    vectors = [_kept(folder / f"{p.name}.json", partial(_solved, p)) for p in chosen]
-    progress(f"{len(vectors)} problems solved")
-    checked = [_checked(method, chosen, samples.get(method, 0), folder, progress) for method in METHODS]
+    solved = [_kept(folder / f"{p.name}.json", partial(_solved, p)) for p in chosen]
+    print_out(f"{len(solved)} problems solved")
+    checked = [_checked(method, chosen, samples.get(method, 0), folder) for method in METHODS]
     made_by = {
         "exact": "integral equation; Hankel transforms of a disc; closed forms of an ellipse",
         "machine": machine(),
     }
-    return data_set(vectors, checked, made_by | {"numpy": versions()["numpy"], "scipy": versions()["scipy"]})
+    return data_set(solved, checked, made_by | {"numpy": versions()["numpy"], "scipy": versions()["scipy"]})
 
 
 def _solved(one: VectorProblem) -> dict[str, Any]:
     return vector(one, exact_rows(one.problem))
 
 
-def _checked(
-    method: str, chosen: list[VectorProblem], count: int, folder: Path, progress: Callable[[str], None]
-) -> dict[str, Any]:
+def _checked(method: str, chosen: list[VectorProblem], count: int, folder: Path) -> dict[str, Any]:
     random = np.random.default_rng([SEED, METHODS.index(method)])
     ellipses = [n for n, one in enumerate(chosen) if one.group == ELLIPSES]
     numbers = sorted(random.permutation(len(chosen) - len(ellipses))[:count].tolist()) + ellipses
@@ -55,7 +66,7 @@ def _checked(
         for name, more in zip(total, (1, found["values"], found["within"]), strict=True):
             total[name] += more
         largest = max(largest, found["largest"])
-        progress(f"{method} {one.name}: {found['within']} of {found['values']}, {found['largest']:.3g} of U")
+        print_out(f"{method} {one.name}: {found['within']} of {found['values']}, {found['largest']:.3g} of U")
     return {"method": method, **total, "largest_share_of_U": largest, "refused": refused}
 
 

@@ -2,16 +2,11 @@
 
 import json
 
+import bench
 import ducc0
 import numpy as np
 import pytest
-from bench import command
-from bench.judge import LIMIT, centres, residual
-from bench.peers import SOLVERS
 from cyclopts import App
-
-app = App(result_action="return_value")
-app.command("bench.command:bench")
 
 
 def test_a_second_thread_is_not_used_where_it_costs_time(monkeypatch):
@@ -26,33 +21,32 @@ def test_a_second_thread_is_not_used_where_it_costs_time(monkeypatch):
 
         monkeypatch.setattr(ducc0.fft, name, counted)
 
-    two = SOLVERS["contact"](512, 2)
+    two = bench.contact(512, 2)
     assert used == {1}
-    np.testing.assert_array_equal(two, SOLVERS["contact"](512, 1))
-    SOLVERS["contact"](2048, 2)
+    np.testing.assert_array_equal(two, bench.contact(512, 1))
+    bench.contact(2048, 2)
     assert used == {1, 2}
 
 
 def test_judge_accepts_hertz_roughly_and_no_guess():
-    x = centres(128)
+    x = bench.centres(128)
     r2 = x[:, None] ** 2 + x[None, :] ** 2
     hertz = 2 / np.pi * np.sqrt(np.maximum(1 - r2, 0))
     # the exact pressure on patches: discretisation of the edge, a few per cent of a patch
-    assert 1e-4 < residual(hertz) < 2e-2
-    assert residual(np.where(r2 < 1, 4 / 3 / np.pi, 0.0)) > 0.1
-    assert residual(1.01 * hertz) > 0.9e-2
+    assert 1e-4 < bench.residual(hertz) < 2e-2
+    assert bench.residual(np.where(r2 < 1, 4 / 3 / np.pi, 0.0)) > 0.1
+    assert bench.residual(1.01 * hertz) > 0.9e-2
 
 
 def test_a_solve_in_its_own_process_satisfies_the_judge_and_a_failure_is_a_message():
-    found = command.solved("contact", 64, 1)
+    found = bench.solved("contact", 64, 1)
     assert found["seconds"] > 0
-    assert 0 < found["residual"] <= LIMIT
+    assert 0 < found["residual"] <= bench.LIMIT
     with pytest.raises(RuntimeError, match="no_such_code"):
-        command.solved("no_such_code", 64, 1)
+        bench.solved("no_such_code", 64, 1)
 
 
 def test_ratios_are_taken_turn_by_turn_and_a_failure_keeps_the_rest(monkeypatch, capsys):
-    monkeypatch.setattr(command, "find_spec", lambda name: None)
     times = iter((1.0, 2.0, 4.0, 5.0, 3.0, 30.0))  # contact, convolution, in each of three turns
 
     def solved(solver, patches, threads):
@@ -60,12 +54,13 @@ def test_ratios_are_taken_turn_by_turn_and_a_failure_keeps_the_rest(monkeypatch,
             raise RuntimeError("no memory")
         return {"seconds": next(times), "residual": 0.0}
 
-    monkeypatch.setattr(command, "solved", solved)
-    words = ["bench", "--sizes", "64", "128", "--threads", "1", "--rounds", "3", "--json"]
-    assert app(words) == 3
+    monkeypatch.setattr(bench, "find_spec", lambda name: None)
+    monkeypatch.setattr(bench, "solved", solved)
+    app = App(result_action="return_value")
+    app.default(bench.bench)
+    assert app(["--sizes", "64", "128", "--threads", "1", "--rounds", "3", "--json"]) == 3
     out, err = capsys.readouterr()
     assert "no memory" in err
     (row,) = json.loads(out)["ratios"]
     assert (row["patches"], row["over"]) == (64, "convolution")
     assert [row[name] for name in ("lowest", "median", "highest")] == [0.1, 0.5, 0.8]
-    assert app(["bench", "--sizes", "8192"]) == 2

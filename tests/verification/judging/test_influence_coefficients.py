@@ -4,10 +4,8 @@ from types import SimpleNamespace
 
 import pytest
 
-import semianalytic
 from verification.cases.case_file import read_case, shipped_cases
 from verification.credibility.faults.fault_planting import Edit, planted
-from verification.judging.invariants import check
 from verification.judging.invariants.influence_error import conversion_errors, influence_coefficients
 from verification.judging.verdict import Outcome
 from verification.problem.coated_contact import CoatedContact
@@ -46,16 +44,6 @@ def test_a_poor_conversion_does_not_pass(edit):
     problem = read_case(shipped_cases()["05_ratio_4"]).problem
     with planted((edit,)):
         assert influence_coefficients(GRID, "semianalytic", problem).outcome is Outcome.DISAGREES
-
-
-def test_only_the_method_that_has_coefficients_is_asked():
-    problem = CoatedContact(1e-2, 20.0, (), (210e9, 0.3))
-    contact = semianalytic.solve(radius=1e-2, load=20.0, coatings=(), substrate=(210e9, 0.3), patches=65)
-    names = {
-        source: [row.name for row in check(contact, source, problem)] for source in ("semianalytic", "other")
-    }
-    assert "influence coefficients" in names["semianalytic"]
-    assert "influence coefficients" not in names["other"]
 
 
 def test_accuracy_of_conversions_is_by_distance_over_the_contact_radius():

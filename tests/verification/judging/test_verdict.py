@@ -9,17 +9,14 @@ from verification.judging.verdict import Outcome, compare, judge
 from verification.problem.line_profile import Profile
 
 
-def profile(value, uncertainty=None, source="a", position=None):
-    value = np.atleast_1d(np.asarray(value, dtype=float))
-    where = np.arange(value.size, dtype=float) if position is None else np.asarray(position, dtype=float)
-    spread = (
-        None if uncertainty is None else np.broadcast_to(np.asarray(uncertainty, dtype=float), value.shape)
-    )
-    return Profile("sigma_xx", "surface", where, value, source, spread)
+def profile(value, uncertainty, source="a"):
+    value = np.atleast_1d(value)
+    U = np.broadcast_to(uncertainty, value.shape)
+    return Profile("sigma_xx", "surface", np.arange(value.size, dtype=float), value, source, U)
 
 
-def outcome(a, b, cap=1e-2, scale=1.0, excluded=None):
-    return judge(compare(a, b, scale=scale, excluded=excluded), cap).outcome
+def outcome(a, b, scale=1.0):
+    return judge(compare(a, b, scale=scale), 1e-2).outcome
 
 
 def test_disagreement_is_not_hidden_by_a_large_uncertainty_elsewhere():

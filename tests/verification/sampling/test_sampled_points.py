@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import semianalytic
-from verification.problem.coated_contact import CoatedContact
+from verification.problem.coated_contact import CoatedContact, keywords
 from verification.problem.evaluation_points import Points
 from verification.problem.line_profile import lines_of
 from verification.sampling.line_sampling import edge_of, positions, sample
@@ -50,8 +50,7 @@ def test_the_largest_shear_stress_lies_between_the_samples():
 
 def test_pressure_at_its_own_edge_is_known_better_than_the_edge():
     problem = CoatedContact(10e-3, 20.0, ((840e9, 0.25, 0.3 * A),), STEEL)
-    given = {name: getattr(problem, name) for name in ("radius", "load", "coatings", "substrate")}
-    found = semianalytic.solve(**given, patches=65)
+    found = semianalytic.solve(**keywords(problem), patches=65)
     surface = next(line for line in lines_of(problem) if line.name == "surface")
     solutions = {"semianalytic": found}
     x, edge = positions(problem, [surface], solutions)[surface], edge_of(solutions)
