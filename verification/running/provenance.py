@@ -5,7 +5,6 @@ import os
 import platform
 import subprocess
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -87,28 +86,6 @@ def fingerprint(modules: tuple[str, ...] = CODE, packages: tuple[str, ...] = ("p
         for path in sorted(place.rglob("*.py")) or [place.with_suffix(".py")]:
             found.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
     return found.hexdigest()
-
-
-@dataclass(frozen=True)
-class Provenance:
-    """Fingerprint of the program that a process runs, its versions by package, the hardware it runs on."""
-
-    code: str
-    versions: dict[str, str]
-    hardware: str
-
-    def difference(self, here: "Provenance") -> str:
-        """How this program differs from that of ``here``; empty where both are the same."""
-        names = sorted(self.versions.keys() | here.versions.keys())
-        found = [(name, self.versions.get(name), here.versions.get(name)) for name in names]
-        words = [f"{name} {there} there, {mine} here" for name, there, mine in found if there != mine]
-        return "" if self.code == here.code else ", ".join(words) or "other source code of coatcheck"
-
-
-@cache
-def provenance() -> Provenance:
-    """The provenance of this process."""
-    return Provenance(fingerprint(), versions(), hardware())
 
 
 def cores() -> int:

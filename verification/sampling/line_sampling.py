@@ -90,7 +90,7 @@ def positions(
 
 
 def ends_of(solution: Solution) -> Array:
-    """Where on y = 0 the contact begins or ends [m], found between the surface nodes."""
+    """Where on y = 0 the contact begins or ends [m], just outside it, found between the surface nodes."""
     x = solution.surface_nodes
     least = 1e-6 * solution.peak_pressure
     loaded = solution.pressure(x) > least
@@ -100,7 +100,7 @@ def ends_of(solution: Solution) -> Array:
         middle = (low + high) / 2
         same = (solution.pressure(middle) > least) == begins
         low, high = np.where(same, low, middle), np.where(same, middle, high)
-    return np.where(begins, high, low)
+    return np.where(begins, low, high)
 
 
 def _clear_of_edges(solution: Solution, line: Line, at: Array, distance: float) -> Array:

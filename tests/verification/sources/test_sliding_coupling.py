@@ -135,7 +135,8 @@ def layers_kernel(r, coating, substrate):
     # the response decays as exp(-2 k h)
     k, w = (1 + x) * 10 / coating[2], w * 10 / coating[2]
     sliding = frf.displacement_frf(k, np.zeros(1), 0, **layers, load="in-plane", excess=True)[0, 0]
-    sliding = sliding / frf.homogeneous_displacement(*coating[:2], "in-plane")[0, 0]
+    alone = {"coatings": (coating,), "substrate": coating[:2]}
+    sliding = sliding / frf.displacement_frf(k[:1], np.zeros(1), 0, **alone, load="in-plane")[0, 0]
     radii, where = np.unique(r.round(9), return_inverse=True)
     phase = np.outer(radii, k)
     found = j0(phase) @ (w * frf.compliance_excess(k, **layers)), j1(phase) @ (w * sliding)

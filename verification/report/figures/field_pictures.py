@@ -237,7 +237,7 @@ def _bar(frame: Frame, scale: Scale) -> str:
 
 SHOWN = ("von_mises", "sigma_xx", "sigma_xz")
 TITLES = {"von_mises": "von Mises"}
-FLOOR, TOP = -8.0, -3.0  # exponents of the difference over p_h; the same in all cases, to be compared
+LOWEST, HIGHEST = -8.0, -3.0  # exponents of the difference over p_h; the same in all cases, to be compared
 EVERY = 3  # of the columns in the table of numbers
 
 
@@ -271,9 +271,9 @@ def pictures(result: CaseResult, plane: Plane | None) -> dict[str, Any] | None:
         if len(sources) == 2:
             apart = [np.abs(one - other) for one, other in zip(*by.values(), strict=True)]
             largest = max(float(g.max()) for g in apart)
-            exponents = [np.log10(np.maximum(g, 10.0 ** (FLOOR - 1))) for g in apart]
-            top = max(TOP, float(np.ceil(np.log10(largest)))) if 0 < largest < np.inf else TOP
-            colours = Scale(FLOOR, top, "cividis", logarithmic=True)
+            exponents = [np.log10(np.maximum(g, 10.0 ** (LOWEST - 1))) for g in apart]
+            top = max(HIGHEST, float(np.ceil(np.log10(largest)))) if 0 < largest < np.inf else HIGHEST
+            colours = Scale(LOWEST, top, "cividis", logarithmic=True)
             label = f"difference of both methods in {title}, logarithmic"
             note = f"largest {scientific(largest)}"
             gaps.append(panel(exponents, colours, f"difference in {title}", label, note))

@@ -25,7 +25,6 @@ T = TypeVar("T")
 
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "DUCC0_NUM_THREADS")
 # glibc keeps freed memory for the next array. Else the kernel clears each page anew: a tenth of the time.
-# Dask gives its workers the opposite.
 MEMORY_VARIABLES = {
     "MALLOC_MMAP_THRESHOLD_": str(32 * 2**20),
     "MALLOC_TRIM_THRESHOLD_": str(2**30),
