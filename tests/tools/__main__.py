@@ -14,8 +14,8 @@ app = App(name="tests/tools", help=__doc__, help_format="plaintext")
 app.command("bench:bench")
 app.command("open_digits_made.making:vectors")
 app.command("assumption_maps_made.measuring:assumptions")
-app.command("tour_recording:tour")
 app.command("result_picture:picture")
+app.command("lobes_picture:lobes")
 
 if __name__ == "__main__":
     sys.exit(app(result_action="return_value"))

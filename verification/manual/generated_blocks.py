@@ -18,7 +18,6 @@ from verification.guests.pages import guests_section
 from verification.manual.baseline_numbers import FOLDER, baseline, largest, points, stored
 from verification.manual.markdown_text import paragraphs, shown, symbol, table, text
 from verification.manual.tour_output import WORKED, solved
-from verification.manual.tour_session import tour_session
 from verification.page.number_text import scientific
 from verification.problem.quantity import QUANTITIES
 from verification.report.credibility import model_section
@@ -205,7 +204,6 @@ _ALL: tuple[Callable[[], str], ...] = (
     real_guests,
     history,
     solved,
-    tour_session,
     enclosures,
     assumption_costs,
     more_pages,

@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from verification.manual.case_pages import contact_pages, published_pages
-from verification.manual.lobes_picture import lobes_picture
 from verification.manual.tour_output import picture
 
 PACKAGE = Path(__file__).resolve().parents[1]
@@ -46,7 +45,6 @@ def generated_pages() -> Iterator[tuple[str, str | bytes]]:
     yield "commands.md", _commands()
     yield "protocol.md", (PACKAGE / "guests" / "PROTOCOL.md").read_text(encoding="utf-8")
     yield "tour.svg", picture()
-    yield "lobes.svg", lobes_picture()
     yield "problem.svg", (PACKAGE / "report" / "html" / "problem.svg").read_bytes()
 
 

@@ -11,7 +11,6 @@ from verification.manual.baseline_numbers import baseline, largest
 from verification.manual.generated_blocks import BLOCKS
 from verification.manual.sphinx_extension import restructured
 from verification.manual.tour_output import WORKED
-from verification.manual.tour_session import COMMANDS, read_session
 from verification.page.number_text import scientific
 
 SLOW = ("solved", *WORKED)  # solve problems
@@ -70,9 +69,3 @@ def test_the_manual_builds_without_a_warning_and_loads_nothing(tmp_path):
     assert len(pages) > 20
     loaded = r'<(?:script|img|link|iframe)[^>]+(?:src|href)="(?:https?:)?//'
     assert [path.name for path, text in pages.items() if re.search(loaded, text)] == []
-
-
-def test_the_record_of_the_tour_is_of_its_commands():
-    recorded = read_session()["commands"]
-    assert [one["words"] for one in recorded] == list(COMMANDS)
-    assert all(one["seconds"] > 0 and one["printed"] for one in recorded)

@@ -1,6 +1,5 @@
-"""Picture of the contact of three lobes: pressure, gap, stress by both methods, and their difference."""
+"""The picture of the manual of a contact of three lobes, drawn from new solutions by both methods."""
 
-import io
 from collections.abc import Sequence
 from typing import Any
 
@@ -9,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from verification.cases.case_file import read_case, shaped_cases
+from verification.manual.generated_blocks import SOURCE
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.indenter_shape import height_of
@@ -24,8 +24,8 @@ COLUMNS = (
 )
 
 
-def lobes_picture() -> bytes:
-    """The picture as SVG: a row for each method and one for the difference."""
+def lobes() -> int:
+    """Pressure, gap and stress of the contact of three lobes by both methods, with their difference."""
     problem = read_case(shaped_cases()[CASE]).problem
     solutions = {}
     for name in METHODS:
@@ -39,10 +39,10 @@ def lobes_picture() -> bytes:
     fields = [_fields(solution, problem, x[half:], y[half:]) for solution in solutions.values()]
     fields = [np.concatenate([one[:, :0:-1], one], axis=1) for one in fields]
     rows = [*zip(solutions, fields, strict=True), ("difference", fields[1] - fields[0])]
-    content = io.BytesIO()
+    path = SOURCE / "_static" / "lobes.svg"
     with mpl.rc_context({"svg.hashsalt": CASE, "font.size": 8}):
-        _drawn(rows, x * 1e6, y * 1e6).savefig(content, format="svg", dpi=160, metadata={"Date": None})
-    return content.getvalue()
+        _drawn(rows, x * 1e6, y * 1e6).savefig(path, format="svg", dpi=160, metadata={"Date": None})
+    return 0
 
 
 def _drawn(rows: Sequence[tuple[str, Array]], x: Array, y: Array) -> Figure:
