@@ -28,8 +28,6 @@ from .axisymmetric import Discretisation, Skeleton
 from .linear_system import ConstrainedFactor
 from .scaling import LayeredSolid
 
-__all__ = ["HarmonicCompliance", "harmonic_compliance"]
-
 DIRECT = 8  # harmonics below are solved one by one
 # What is left of a harmonic m >= 2, which falls as the power m + 1 of the distance from the axis in contact
 # radii, where it is taken as zero

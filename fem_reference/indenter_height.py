@@ -7,8 +7,6 @@ import numpy as np
 
 from .validation import check_positive
 
-__all__ = ["Height", "Indenter", "indenter_height"]
-
 Height = Callable[[Any, Any], Any]
 Indenter = tuple[str, tuple[float, ...]]
 

@@ -23,8 +23,6 @@ from .scaling import Coatings, LayeredSolid, Units
 from .solution import cartesian, tensor
 from .validation import check_choice, check_materials, check_positive, check_proportions
 
-__all__ = ["OffAxisFields", "PressedSolid", "check_pressure", "discretised"]
-
 Pressure = Callable[[Any, Any], Any]
 
 ANGLES = 2048  # midpoints on half a circle: p falls to zero like a square root there

@@ -23,8 +23,6 @@ from .scaling import Coatings, LayeredSolid, Units
 from .star_contact import Corrected, StarPressure, corrected
 from .validation import check_choice, check_materials, check_positive, check_proportions
 
-__all__ = ["ShapedContact", "ShapedDiagnostics", "solve_shape"]
-
 MARGIN = 1.04  # of the contact up to the last node below the pressure
 WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
 QUALITIES = {"fast": (0.5, 0.12, 120), "default": (0.44, 0.07, 240), "fine": (0.38, 0.06, 288)}

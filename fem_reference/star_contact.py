@@ -22,8 +22,6 @@ import numpy as np
 
 from .harmonic_compliance import HarmonicCompliance
 
-__all__ = ["StarPressure", "corrected"]
-
 Pressure = Callable[[Any, Any], Any]
 
 DEGREE = 2

@@ -17,8 +17,6 @@ from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, Solution, stress_with_uncertainty
 from verification.sources.references.layered_half_space import bending_length
 
-__all__ = ["BESIDE", "ENDS", "Search", "Tension", "around_edge", "edge_uncertainty"]
-
 # Of t: samples close to the edge, where thin films bend, then evenly. REACH: of a, beside 4 bending lengths.
 CLOSE, STEP, REACH = np.geomspace(0.01, 0.5, 20), 0.09, 4.0
 WINDOW, NODES = 3, 33  # samples either side of the largest one, Chebyshev nodes between the outermost

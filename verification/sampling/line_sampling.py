@@ -21,8 +21,6 @@ from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIE
 from verification.sampling import oblique_sampling
 from verification.sampling.largest_tension import BESIDE, ENDS, Search, around_edge, edge_uncertainty
 
-__all__ = ["edge_of", "ends_of", "positions", "sample", "sample_contact"]
-
 # Of a: distances from the contact edge of points on the surface line, either side.
 NEAR_EDGE = np.array([0.0, 1e-4, 1e-3, 1e-2])
 

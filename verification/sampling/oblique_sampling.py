@@ -19,8 +19,6 @@ from verification.problem.coated_contact import (
 from verification.problem.line_profile import Line, Profile
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
 
-__all__ = ["positions", "sample"]
-
 # Of the contact radius.
 ACROSS = np.linspace(0, 1.2, 13)
 SURFACE = np.concatenate([np.linspace(0, 1.4, 15), np.geomspace(1.6, 5.0, 8)])

@@ -16,8 +16,6 @@ from verification.problem.loading_curve import LoadingCurve
 from verification.problem.quantity import EXTREMES, QUANTITIES
 from verification.sources.loading_solution import Loading
 
-__all__ = ["values"]
-
 
 def values(
     solution: Solution | Loading,

@@ -15,9 +15,6 @@ from verification.problem.coated_contact import CoatedContact, Solution, stress_
 from verification.problem.quantity import IN_PLANE
 from verification.sources.source_registry import METHODS
 
-__all__ = ["Plane", "depths_of", "plane_invariants", "sample_plane"]
-
-
 WIDTH = 2.0  # half width over the contact radius, where the grid of the semi-analytical method goes as far
 DEPTH = 1.5  # over the contact radius; at least 1.3 times the deepest interface, up to DEEPEST
 DEEPEST = 3.0

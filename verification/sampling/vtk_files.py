@@ -13,9 +13,6 @@ from verification.problem.array_types import Array
 from verification.problem.quantity import STRESSES, von_mises
 from verification.sampling.stress_plane import depths_of
 
-__all__ = ["ALONG", "LEVELS", "WRITERS"]
-
-
 EVERY, ALONG = 4, 121  # of the patch centres along a side of the box, fewer for at most so many points
 LEVELS = 20  # depths of the box, over that of an uncoated solid
 

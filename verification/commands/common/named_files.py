@@ -11,8 +11,6 @@ from verification.cases.published_file import PublishedCase, published_cases, re
 from verification.cases.toml_file import CaseError
 from verification.commands.common.terminal import did_you_mean
 
-__all__ = ["SHIPPED", "chosen_cases", "path_of", "require_distinct"]
-
 SHIPPED = "case (see coatcheck list)"
 
 

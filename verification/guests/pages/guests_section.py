@@ -8,8 +8,6 @@ import verification.guests
 from verification.page.number_text import seconds
 from verification.page.page_parts import Part, Section, Table, number, row, tally, words
 
-__all__ = ["COLUMNS", "examined", "section"]
-
 RECORD = Path(verification.guests.__file__).parent / "shipped" / "guests.json"
 # Kinds of a difference on record, with their headings.
 COLUMNS = {
