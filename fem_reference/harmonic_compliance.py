@@ -73,10 +73,6 @@ class HarmonicCompliance:
         """Solutions, by number, whose weighted sum is that of harmonic m."""
         return _weights(self.solved, m)
 
-    def upto(self, last: int) -> np.ndarray:
-        """S_m of the harmonics to ``last``."""
-        return self.matrices[: last // self.fold + 1]
-
     def nodal_loads(self, r: np.ndarray, theta: np.ndarray, forces: np.ndarray, last: int) -> np.ndarray:
         """L of ``forces`` (columns, arcs, points), (harmonics to ``last``, nodes, columns).
 

@@ -93,10 +93,8 @@ class StarPressure:
 
     def edge_at(self, tau: np.ndarray) -> np.ndarray:
         """Distance of the moved edge from the centre."""
-        return self._unmoved(tau) * (1 + self._shift(np.ones(tau.shape), tau))
-
-    def _unmoved(self, tau: np.ndarray) -> np.ndarray:
-        return np.polynomial.chebyshev.chebval(np.cos(tau), self.contour) ** -0.5
+        given = np.polynomial.chebyshev.chebval(np.cos(tau), self.contour) ** -0.5
+        return given * (1 + self._shift(np.ones(tau.shape), tau))
 
     def _shift(self, s: np.ndarray, tau: np.ndarray) -> np.ndarray:
         """Relative change of r of the points s of the given pressure; regular at the centre."""
@@ -263,7 +261,8 @@ def corrected(
     last : harmonic at which the compliance is cut off for the corrections, which are smooth; not for the
     loads and the gap that are found
     """
-    vertices, matrices = compliance.nodes[:: compliance.discretisation.order], compliance.upto(last)
+    vertices = compliance.nodes[:: compliance.discretisation.order]
+    matrices = compliance.matrices[: last // compliance.fold + 1]
     pressure = given
     for step in range(STEPS + 1):
         at = pressure.quadrature(vertices, last)
