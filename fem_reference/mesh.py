@@ -33,7 +33,7 @@ _LEAST_ROW = 0.25
 # Growth of triangles below an evenly divided surface, and beyond the contact, a unit of the stretched plane.
 _BELOW, _BEYOND = 0.2, 0.5
 # The size at an edge on such a surface, and its growth with the distance, times the size elsewhere.
-_LEAST, _RATE = 1 / 28, 8.5
+_LEAST, _RATE = 1 / 24, 11.0
 # The largest sizes at the edge, far away and in coatings. A film of one row of triangles as high as the last
 # makes the contact too stiff by up to 1e-5.
 _LARGEST_AT_EDGE, _LARGEST_FAR, _LARGEST_IN_FILM = 0.6, 0.7, 0.47

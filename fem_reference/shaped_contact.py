@@ -25,7 +25,7 @@ from .validation import check_choice, check_materials, check_positive, check_pro
 
 MARGIN = 1.04  # of the contact up to the last node below the pressure
 WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
-QUALITIES = {"fast": (0.5, 0.12, 120), "default": (0.44, 0.07, 240), "fine": (0.38, 0.06, 288)}
+QUALITIES = {"fast": (0.5, 0.12, 120), "default": (0.44, 0.06, 240), "fine": (0.4, 0.05, 288)}
 # Times the number of waves as wide as the contact at its end on y = 0, as deep inside as the triangles there.
 AT_END = 4.0
 STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish
@@ -34,7 +34,7 @@ SAFETY = 2.0  # of the change from the companion
 # times as much on the axis, where integrals in r dr hold the fields least; so far around it
 AXIS = 2.25, 0.15
 RESOLVED = 1 / 8  # of an element's width
-COARSER = 1.35  # triangles of the companion over those of the mesh
+COARSER = 1.3  # triangles of the companion over those of the mesh
 CORRECTING = 96  # of the harmonics, that correct the pressure
 FEWER = 0.7  # of these, for the change by what is beyond them
 TYPICAL = 97  # per cent of points below the contact whose stress changes less from the companion
