@@ -164,8 +164,8 @@ class Part:
 
     @property
     def download(self) -> str:
-        """The numbers of the gallery as a data address; "" without a gallery."""
-        if self.gallery is None:
+        """The numbers of the gallery as a data address; "" without a gallery, or where it has none."""
+        if self.gallery is None or not (self.gallery.csv or self.tables):
             return ""
         return embedded(self.gallery.csv or written([row for item in self.tables for row in _cells_of(item)]))
 
