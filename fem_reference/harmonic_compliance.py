@@ -38,7 +38,7 @@ DENSITY = 3.1
 
 @dataclass(frozen=True, eq=False)
 class HarmonicCompliance:
-    """Response to the pressures that act within the contact radius of one mesh.
+    """Response to the pressures that act on the unknowns ``loaded`` of one field on the surface of one mesh.
 
     solved : m of each solution.  fields : field vectors by unit loads of it, (field vector, nodes).
     meridians : of the same m, factorised.  last, fold : harmonics 0, fold, 2 fold, .., last
@@ -46,6 +46,7 @@ class HarmonicCompliance:
 
     solid: LayeredSolid
     discretisation: Discretisation
+    loaded: np.ndarray
     solved: tuple[float, ...]
     fields: tuple[np.ndarray, ...]
     meridians: tuple["Meridian", ...]
@@ -55,7 +56,7 @@ class HarmonicCompliance:
     @cached_property
     def nodes(self) -> np.ndarray:
         """Radii of the unknowns below the pressure."""
-        return self.discretisation.locations[0, self.discretisation.contact]
+        return self.discretisation.locations[0, self.loaded]
 
     @cached_property
     def harmonics(self) -> np.ndarray:
@@ -65,8 +66,7 @@ class HarmonicCompliance:
     @cached_property
     def matrices(self) -> np.ndarray:
         """S_m, (harmonics, nodes, nodes)."""
-        d = self.discretisation
-        deflection = [u[-d.N :][d.contact] for u in self.fields]
+        deflection = [u[-self.discretisation.N :][self.loaded] for u in self.fields]
         return np.array([sum(w * deflection[k] for k, w in self.weights(m)) for m in self.harmonics])
 
     def weights(self, m: int) -> list[tuple[int, float]]:
@@ -113,7 +113,7 @@ class HarmonicCompliance:
 
         def respond(k: int, columns: np.ndarray) -> np.ndarray:
             one = known.get(solved[k]) or Meridian.of(self.solid, self.discretisation, solved[k])
-            return one.fields(columns)
+            return one.fields(self.loaded, columns)
 
         return _superposed(solved, pulled, respond)
 
@@ -125,7 +125,7 @@ class HarmonicCompliance:
             wave = wave * turn
 
     def _shapes(self, r: np.ndarray) -> sp.csr_matrix:
-        """phi_i(r), (points, nodes); r within the last node."""
+        """phi_i(r), (points, nodes); r between the first node and the last."""
         order = self.discretisation.order
         vertices = self.nodes[::order]
         cell = np.clip(np.searchsorted(vertices, r, side="right") - 1, 0, vertices.size - 2)
@@ -139,16 +139,26 @@ class HarmonicCompliance:
 
 
 def harmonic_compliance(
-    solid: LayeredSolid, d: Discretisation, last: int, fold: int, density: float = DENSITY
+    solid: LayeredSolid,
+    d: Discretisation,
+    last: int,
+    fold: int,
+    density: float = DENSITY,
+    inner: float = 0.0,
 ) -> HarmonicCompliance:
-    """Compliance to pressures within the mesh's contact radius, of harmonics 0, fold, .. to ``last``."""
+    """Compliance to pressures between the radius ``inner`` and the mesh's contact radius.
+
+    Of harmonics 0, fold, .. to ``last``
+    """
     wanted = range(0, last + 1, fold)
     solved = (*(m for m in wanted if m < DIRECT), *_high(last + 1, density))
-    normal = np.zeros((3, d.contact.size, d.contact.size))
-    normal[0] = np.eye(d.contact.size)
+    first = np.searchsorted(d.contact_vertices, inner, side="right") - 1
+    loaded = d.contact[d.order * first :]
+    normal = np.zeros((3, loaded.size, loaded.size))
+    normal[0] = np.eye(loaded.size)
     meridians = tuple(Meridian.of(solid, d, m) for m in solved)
-    fields = tuple(one.fields(normal) for one in meridians)
-    return HarmonicCompliance(solid, d, solved, fields, meridians, last, fold)
+    fields = tuple(one.fields(loaded, normal) for one in meridians)
+    return HarmonicCompliance(solid, d, loaded, solved, fields, meridians, last, fold)
 
 
 def _high(last: int, density: float) -> list[float]:
@@ -198,7 +208,7 @@ def _superposed(
 
 @dataclass(frozen=True, eq=False)
 class Meridian:
-    """The meridian problem of one m, factorised, under loads within the contact radius of the mesh."""
+    """The meridian problem of one m, factorised."""
 
     solid: LayeredSolid
     discretisation: Discretisation
@@ -219,8 +229,10 @@ class Meridian:
         fixed += [field * d.N + still for field in range(count)]
         return cls(solid, d, m, K, ConstrainedFactor.of(K.matrix, np.concatenate([*fixed, K.inner.ravel()])))
 
-    def fields(self, loads: np.ndarray) -> np.ndarray:
+    def fields(self, loaded: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Field vectors (n, columns) under ``loads`` (3, nodes, columns): normal, radial, angular products.
+
+        loaded : unknowns of one field at the nodes.
 
         Far away the displacement due to the resultant: normal for m = 0, tangential for m = 1.
         """
@@ -229,7 +241,7 @@ class Meridian:
         normal, radial, angular = loads / (2 * np.pi if m == 0 else np.pi)
         # virtual work R U + T V with U = S - V
         load = [radial, normal] if m == 0 else [radial, angular - radial, normal]
-        at = np.concatenate([field * d.N + d.contact for field in range(count)])
+        at = np.concatenate([field * d.N + loaded for field in range(count)])
         given = None
         if m < 2:
             resultant = loads[0].sum(axis=0) if m == 0 else (loads[1] - loads[2]).sum(axis=0)

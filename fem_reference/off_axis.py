@@ -34,9 +34,9 @@ NEGLIGIBLE = 1e-9  # of the largest: a harmonic of the pressure below is left ou
 # fall as m^-5/2, of the stress, m^-3/2, and alternate in sign but at the edge.
 BEYOND = 0.5, 1.0
 FULL = 0.4  # of the harmonics count in full in a stress, those beyond ever less
-# Distances from an edge, over the triangles there, between which the series beside it is fitted; its powers
-# 1/2, 1, .. d^(n/2), and as many to see what they miss.
-BESIDE, POWERS = (1.0, 20.0), (3, 4)
+# Distances from an edge, over the triangles there, between which the series beside it is fitted; its half
+# powers, and as many to see what they add.
+BESIDE, HALVES = (1.2, 16.0), (3, 2)
 
 
 def check_pressure(
@@ -232,10 +232,10 @@ class OffAxisFields:
         for k, edge in enumerate(self.edges):
             near = np.flatnonzero(along & (np.abs(x - edge) < self.least))
             if near.size:
-                fewer, more = self._series[k]
                 away = np.sign(edge) * (x[near] - edge) / self.least
-                s[:2, near] = _half_powers(away, fewer)
-                late_s[:2, near] += _half_powers(away, more) - s[:2, near]
+                more, fewer = ((_powers(away, n) @ c).T for n, c in zip(HALVES, self._series[k], strict=True))
+                s[:2, near] = more
+                late_s[:2, near] += more - fewer
         p = np.where(surface, self.pressure(at.r_given * points.cos, at.r_given * points.sin), 0.0)
         nu, f = self.compliance.solid.materials[0][1], self.friction
         s[:2] -= nu / (1 - nu) * p
@@ -279,7 +279,7 @@ class OffAxisFields:
 
     @cached_property
     def _series(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Coefficients (powers, 2) of rr and tt beside each edge, with three and with four powers.
+        """Coefficients (powers, 2) of rr and tt beside each edge, with three half powers and with two.
 
         Fitted where the triangles are no larger than their distance from the edge.
         """
@@ -290,9 +290,9 @@ class OffAxisFields:
             x, zero = edge + np.sign(edge) * away, np.zeros(away.size)
             located = self.discretisation.locator.points(np.abs(x), zero, zero.astype(int))
             _, s, _, _ = self._summed(SolidPoints(located, np.sign(x), zero, x.shape))
-            terms = [_half_powers(away / self.least, np.eye(1 + 2 * n)).T for n in POWERS]
-            fewer, more = (np.linalg.lstsq(one, s[:2].T, rcond=None)[0] for one in terms)
-            found.append((fewer, more))
+            terms = [_powers(away / self.least, n) for n in HALVES]
+            more, fewer = (np.linalg.lstsq(one, s[:2].T, rcond=None)[0] for one in terms)
+            found.append((more, fewer))
         return found
 
 
@@ -301,14 +301,14 @@ def _taper(share: float) -> float:
     return float(np.cos(np.pi / 2 * min(max(0.0, (share - FULL) / (1 - FULL)), 1.0)) ** 2)
 
 
-def _half_powers(away: np.ndarray, c: np.ndarray) -> np.ndarray:
-    """c_0 + sum_k c_k d^(k/2) of distances d inside the edge (away < 0), as many further c outside; (.., n).
+def _powers(away: np.ndarray, halves: int) -> np.ndarray:
+    """1, d, d^2, and d^(k - 1/2) for k = 1, .. on either side of the edge, (n, powers); d < 0 is inside.
 
-    c : (1 + 2 powers, ..)
+    The layers, and all of the pressure but what is at the edge, give a stress that is smooth across it.
     """
-    k = np.arange(1, len(c) // 2 + 1) / 2
-    inside, outside = np.maximum(-away, 0)[:, None] ** k, np.maximum(away, 0)[:, None] ** k
-    return (np.hstack([np.ones((away.size, 1)), inside, outside]) @ c).T
+    sides = np.maximum([-away, away], 0)
+    roots = [side ** (k + 0.5) for k in range(halves) for side in sides]
+    return np.stack([np.ones(away.size), away, away**2, *roots], axis=1)
 
 
 @dataclass(frozen=True, eq=False)

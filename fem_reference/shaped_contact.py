@@ -23,11 +23,11 @@ from .scaling import Coatings, LayeredSolid, Units
 from .star_contact import Corrected, StarPressure, corrected
 from .validation import check_choice, check_materials, check_positive, check_proportions
 
-MARGIN = 1.04  # of the contact up to the last node below the pressure
+MARGIN = 1.04  # of the contact up to the last node below the pressure, and as much before the first
 WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
 QUALITIES = {"fast": (0.5, 0.12, 120), "default": (0.38, 0.06, 240), "fine": (0.4, 0.05, 288)}
 # Times the number of waves as wide as the contact at its end on y = 0, as deep inside as the triangles there.
-AT_END = 3.2
+AT_END = 5.0
 STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish
 WAVES = 4e-5  # of the peak, by short waves of the pressure given: 5e-5 in one of 30 ellipses, on both meshes
 SAFETY = 2.0  # of the change from the companion
@@ -201,11 +201,12 @@ def solve_shape(
         widest += indenter[1][0]
     pressure = StarPressure.of(start, fold, widest)
     # six digits, lest the mesh follow the rounding of the pressure given
-    reach = float(f"{MARGIN * pressure.farthest:.6g}")
+    reach = float(f"{MARGIN * pressure.reach[1]:.6g}")
     unit = Units(length=reach, pressure=E, modulus=E)
     solid = LayeredSolid.scaled(coatings, substrate, reach, far, E)
     check_proportions(solid.thicknesses, "the contact's extent")
     scaled = pressure.scaled(reach, E)
+    inner = max(0.0, scaled.reach[0] - (MARGIN - 1))
 
     if harmonics is None:
         waves = np.pi / scaled.end_angle(float(surface_size(surface, 0.0)))
@@ -221,7 +222,7 @@ def solve_shape(
         radii = sorted(round(abs(x), 4) for x in begin.edges)
         apart = tuple(r for r, before in zip(radii, [0.0, *radii], strict=False) if r - before > surface / 10)
         d = discretised(solid, coarser * size, coarser * surface, order, growth=0.8, edges=apart)
-        compliance = harmonic_compliance(solid, d, harmonics, fold, DENSITY / coarser)
+        compliance = harmonic_compliance(solid, d, harmonics, fold, DENSITY / coarser, inner)
         found = corrected(compliance, begin, scaled_height, load / unit.load, correcting)
         if not found.converged:
             raise NotConverged(

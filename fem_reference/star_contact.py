@@ -161,11 +161,17 @@ class StarPressure:
         return float(np.pi * np.mean(self.edge_at(tau) ** 2) * (2 if self.centre else 1))
 
     @property
-    def farthest(self) -> float:
-        """Largest distance of the contact from the origin."""
+    def _contour(self) -> tuple[np.ndarray, np.ndarray]:
+        """x and y along the edge, from the end on x > 0."""
         tau = np.linspace(0, np.pi, 1441)
         R = self.edge_at(tau)
-        return float(np.hypot(self.centre + R * np.cos(tau), R * np.sin(tau)).max())
+        return self.centre + R * np.cos(tau), R * np.sin(tau)
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """Least and largest distance of the contact from the origin."""
+        distance = np.hypot(*self._contour)
+        return float(distance.min()) if self.centre else 0.0, float(distance.max())
 
     def scaled(self, length: float, pressure: float) -> "StarPressure":
         """The same, not corrected yet, in these units."""
@@ -187,9 +193,7 @@ class StarPressure:
 
         Pi where it reaches no farther there than to the sides.
         """
-        tau = np.linspace(0, np.pi, 1441)
-        R = self.edge_at(tau)
-        x, y = self.centre + R * np.cos(tau), R * np.sin(tau)
+        x, y = self._contour
         ended = np.flatnonzero(np.hypot(x, y) < x[0] - depth)
         return float(np.arctan2(y, x)[ended[0]]) if ended.size else np.pi
 
@@ -215,9 +219,8 @@ class StarPressure:
     @property
     def extents(self) -> tuple[float, float]:
         """Largest x and y of the contact."""
-        tau = np.linspace(0, np.pi, 1441)
-        R = self.edge_at(tau)
-        return float((self.centre + R * np.cos(tau)).max()), float((R * np.sin(tau)).max())
+        x, y = self._contour
+        return float(x.max()), float(y.max())
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,6 +34,7 @@ FEW, LAYERED = 3, (6.0, 4.6)
 USUAL = 115  # patches in a of the default grid; beyond, a grid 1.4 times as fine has one polynomial more
 LAYER = 7.0  # e over h/a: 4 is best for one coating, 8 for a stack, whose images lie farther away too
 RESOLVED = 1.75  # polynomials for each sqrt(patches in a times e asinh(1/e)); under stacks 2 did not converge
+MIRRORED = 1e-12  # of the depth of the indenter, by which a gap that is even in y may miss it
 THICK = 100.0  # e of a layer so thick that it does not matter
 
 
@@ -123,9 +124,13 @@ def _start(problem: LevelProblem, p: Array) -> Shape | None:
     Nor two, each the other's mirror image.
     """
     grid = problem.grid
-    harmonics: tuple[int, ...] = (
-        edge_shape.ROUND if problem.indenter.round else edge_shape.EVEN if grid.quarter else edge_shape.FULL
-    )
+    harmonics: tuple[int, ...] = edge_shape.FULL
+    if problem.indenter.round:
+        harmonics = edge_shape.ROUND
+    elif grid.quarter:
+        harmonics = edge_shape.EVEN
+    elif np.allclose(problem.gap, problem.gap[:, ::-1], rtol=0.0, atol=MIRRORED * problem.depth):
+        harmonics = edge_shape.ACROSS
     whole = grid.whole(p)
     x, y = grid.whole_centres(problem.window)
     twin = grid.quarter and not (whole[np.abs(x) < grid.d] > 0).any()

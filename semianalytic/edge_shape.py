@@ -33,7 +33,8 @@ Array = NDArray[np.floating]
 ROUND = (0,)  # harmonics of a contact that is round,
 EVEN = (0, 2, 4, 6, 8, 10)  # even in x and in y,
 HALF = tuple(range(9))  # even in y, beside its mirror image,
-FULL = (0, *(side * n for n in (1, 2, 3, 4, 6, 8, 9, 10) for side in (1, -1)))  # any
+ACROSS = (0, 1, 2, 3, 4, 6, 8, 9, 10)  # even in y,
+FULL = (*ACROSS, *(-n for n in ACROSS[1:]))  # any
 DAMPING = 0.8  # share of the first step of a fit
 FADED = 0.15, 0.4  # t over which a pressure fitted near the edge alone, and its fit, fade to the inside
 BLUNT = 0.7  # patches from the edge, nearer than which the column of the edge, infinite there, is constant
@@ -85,6 +86,21 @@ class Shape:
             if np.all(np.abs(t) < 1e-15):
                 break
         return reach
+
+    def on_ray(self, s: Array, angle: Array) -> tuple[Array, Array]:
+        """x and y [m] at a share s of the way from the centre to the edge."""
+        reach, (x0, y0), (A, B) = s * self.reach(angle), self.centre, self.axes
+        return x0 + A * reach * np.cos(angle), y0 + B * reach * np.sin(angle)
+
+    def matching(self, first: "Shape", x: Array, y: Array) -> tuple[Array, Array]:
+        """x and y [m] at the share of the way to the edge at which x and y are under the ``first``."""
+        if self.round and first.round:
+            ratio = self.radius / first.radius
+            return x * ratio, y * ratio
+        u, v = first._framed(x, y)
+        angle = np.arctan2(v, u)
+        X, Y = self.on_ray(np.hypot(u, v) / first.reach(angle), angle)
+        return (np.where(x < 0, -X, X) if self.twin else X), Y
 
     def _in_frame(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
         s2 = u * u + v * v
@@ -239,7 +255,7 @@ def start(pressure: Array, x: Array, y: Array, harmonics: tuple[int, ...], terms
         r = 4 * float(np.mean(u * v)) / (A * B)
         A, B = A * float(np.sqrt(1 - r * r)), B * float(np.sqrt(1 - r * r))
         contour[harmonics.index(-2)] = r / 2
-    if harmonics == FULL:
+    if harmonics in (ACROSS, FULL):
         A, B = _lobed(contour, harmonics, u / A + 1j * v / B, (A, B), area)
     b = np.zeros((terms, len(harmonics)))
     b[0, 0] = 1.5 * float(pressure[loaded].mean())
@@ -337,11 +353,12 @@ def _normal_equations(
     if shape.outside:
         window = np.clip((FADED[1] - shape.polynomials(x, y)[0]) / (FADED[1] - FADED[0]), 0, 1)
         columns, left = columns * window, left * window
-    deflected = np.stack([deflection(column) for column in columns])
+    # where either pressure acts
+    loaded = (left != 0) | (columns[0] != 0)
+    deflected = np.stack([deflection(column)[loaded] for column in columns])
     if weight is not None:
-        deflected *= weight
-    of_columns = deflected.reshape(count, -1)
-    return of_columns @ columns.reshape(count, -1).T, of_columns @ left.ravel()
+        deflected *= weight[loaded]
+    return deflected @ columns[:, loaded].T, deflected @ left[loaded]
 
 
 def _between_centres(shape: Shape, loaded: NDArray[np.bool_], x: Array, y: Array, patch: float) -> Shape:

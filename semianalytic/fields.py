@@ -23,12 +23,12 @@ def stress(
 ) -> Array:
     """Stress tensor [Pa] of each level at points [m], broadcast; shape (len(levels), 3, 3) + points.
 
-    Coarser levels are sampled at the same distance from their edge, over their radius.
+    Coarser levels are sampled at the same distance from their centre, over that of their edge there.
     """
     points = _points(body, x, y, z, layer)
-    ratios = [_ratio(level, levels[0]) for level in levels]
+    places = [level.matching(levels[0], *points[:2]) for level in levels]
     out = np.zeros((len(levels), 6, points[0].size))
-    _add(out, levels, ratios, body, points, subsurface.stress, patch_field.stress)
+    _add(out, levels, places, body, points, subsurface.stress, patch_field.stress)
     shape = np.broadcast_shapes(*(np.shape(v) for v in (x, y, z)))
     return np.array([patch_field.tensor(one) for one in out]).reshape(len(levels), 3, 3, *shape)
 
@@ -36,34 +36,32 @@ def stress(
 def displacement(levels: Sequence[Level], body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
     """Displacement [m] of each level at points [m], broadcast; shape (len(levels), 3) + points."""
     points = _points(body, x, y, z, None)
-    ratios = [1.0] * len(levels)
+    places = [points[:2]] * len(levels)
     out = np.zeros((len(levels), 3, points[0].size))
-    _add(out, levels, ratios, body, points, subsurface.displacement, patch_field.displacement)
+    _add(out, levels, places, body, points, subsurface.displacement, patch_field.displacement)
     return out.reshape(len(levels), 3, *np.broadcast_shapes(*(np.shape(v) for v in (x, y, z))))
 
 
 def _add(
     out: Array,
     levels: Sequence[Level],
-    ratios: Sequence[float],
+    places: Sequence[tuple[Array, Array]],
     body: Body,
     points: tuple[Array, Array, Array, NDArray[np.intp]],
     on_rings: Callable[..., Array],
     on_patches: Callable[..., Array],
 ) -> None:
-    """Adds the field of each level at points times its ratio, x and y, to ``out``."""
+    """Adds the field of each level at its ``places``, x and y [m], to ``out``."""
     smooth = [level.smooth(number) for number, level in enumerate(levels)]
     edged = [k for k, one in enumerate(smooth) if one is not None]
     if edged:
         pressures = [smooth[k] for k in edged]
-        out[edged] = on_rings(*points, pressures=pressures, body=body, ratios=[ratios[k] for k in edged])
-    x, y, z, layer = points
-    for total, level, one, ratio in zip(out, levels, smooth, ratios, strict=True):
+        out[edged] = on_rings(*points, pressures=pressures, body=body, places=[places[k] for k in edged])
+    for total, level, one, place in zip(out, levels, smooth, places, strict=True):
         rough = level.mean if one is None else level.rest
         if rough is not None:
             pressure = level.grid.whole(rough)
-            at = x * ratio, y * ratio, z, layer
-            total += on_patches(*at, grid_x=level.nodes, pressure=pressure, body=body)
+            total += on_patches(*place, *points[2:], grid_x=level.nodes, pressure=pressure, body=body)
 
 
 def stress_of_uncertain_edge(
@@ -99,10 +97,3 @@ def _points(
         *(np.asarray(v, dtype=float) for v in (x, y, z)), body.layer_of(z, layer)
     )
     return x.ravel(), y.ravel(), z.ravel(), where.ravel()
-
-
-def _ratio(level: Level, first: Level) -> float:
-    """Of x under a level with a smooth edge to the same x/a under the first."""
-    if level.shape is None or first.shape is None:
-        return 1.0
-    return level.shape.radius / first.shape.radius

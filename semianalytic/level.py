@@ -141,6 +141,12 @@ class Level:
             return Disc(self.given.radius, self.given.of_square, 24 - 4 * coarser, 10 - coarser)
         return None if self.shape is None else rings_of(self.shape, coarser)
 
+    def matching(self, first: "Level", x: Array, y: Array) -> tuple[Array, Array]:
+        """Points [m] at the distances from a smooth edge that x and y have from that of the ``first`` level."""
+        if self.shape is None or first.shape is None:
+            return x, y
+        return self.shape.matching(first.shape, x, y)
+
     @cached_property
     def rest(self) -> Array | None:
         """Pressure of the patches less that of the shape [Pa], inside; None where it is their own error.

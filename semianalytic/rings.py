@@ -87,21 +87,21 @@ class Disc:
 
 
 def rings_around(
-    pressures: "Sequence[RingPressure]", ratios: Sequence[float], x: Array, y: Array, scale: Array
+    pressures: "Sequence[RingPressure]", points: Sequence[tuple[Array, Array]], scale: Array
 ) -> list[Rings]:
-    """Rings of each pressure around points x, y [m], (n,), times its ratio; ``scale`` as in `Disc`.
+    """Rings of each pressure around its points x, y [m], (n,); ``scale`` as in `Disc`.
 
     Round pressures of the same x/a share the places of the rings over a.
     """
     discs = [p for p in pressures if isinstance(p, Disc)]
     alike = len(discs) == len(pressures) and all(
-        abs(disc.radius / (ratio * discs[0].radius) - 1) < 1e-12
-        for disc, ratio in zip(discs, ratios, strict=True)
+        np.allclose(np.divide(one, disc.radius), np.divide(points[0], discs[0].radius), 1e-12, 0.0)
+        for disc, one in zip(discs, points, strict=True)
     )
     # one pressure on fewer points shows the error of these
     if alike and not any(disc.of_square == discs[0].of_square for disc in discs[1:]):
-        return _around(discs, x, y, scale)
-    return [p.rings(x * ratio, y * ratio, scale) for p, ratio in zip(pressures, ratios, strict=True)]
+        return _around(discs, *points[0], scale)
+    return [p.rings(x, y, scale) for p, (x, y) in zip(pressures, points, strict=True)]
 
 
 def _around(discs: Sequence[Disc], x: Array, y: Array, scale: Array) -> list[Rings]:

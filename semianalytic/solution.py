@@ -19,7 +19,7 @@ from semianalytic import fields
 from semianalytic.inputs import Body, check_finite
 from semianalytic.level import Level
 from semianalytic.neighbours import Neighbours
-from semianalytic.uncertainty import Uncertainty, safety
+from semianalytic.uncertainty import SMOOTH, Uncertainty, safety
 
 Array = NDArray[np.floating]
 
@@ -280,18 +280,16 @@ class Solution:
         radius."""
         fine = self._level.shape
         assert fine is not None
+        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         p, second, third = (
-            self._pressure_of(
-                level, np.asarray(x) * level.radius / fine.radius, np.asarray(y) * level.radius / fine.radius
-            )
-            for level in self._levels
+            self._pressure_of(level, *level.matching(self._level, x, y)) for level in self._levels
         )
         total = self._change(np.abs(p - second), np.abs(second - third), x, y)
         total = total + self._floor + self._near_ripple(x, y) + self._other_parameters * self.peak_pressure
         total = np.maximum(total, self._misfit(x, y, 0.0))
         if self.relative:
             return total
-        shift = self._stated.contact_radius
+        shift = self._uncertain_reach
         moved = [np.abs(fine.widened(s).pressure(x, y) - p) for s in (-shift, shift)]
         return np.maximum(total, np.max(moved, axis=0))
 
@@ -387,7 +385,7 @@ class Solution:
             return 0.0
         width = min(TAPER * self.diagnostics.patch_size / min(shapes[0].axes), 1.0)
         s = 1 - width * np.linspace(1.0, 0.0, 33) ** 2
-        p = [one.pressure(one.centre[0] + one.axes[0] * s, one.centre[1]) for one in shapes]
+        p = [one.pressure(*one.on_ray(s, np.zeros(s.size))) for one in shapes]
         return float(np.abs(p[0] - p[1]).max())
 
     def _misfit(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
@@ -410,13 +408,7 @@ class Solution:
         shapes = [level.shape for level in self._levels[:2] if level.shape is not None]
         s = np.linspace(-1, 1, 201)
         s, angle = np.sqrt(np.abs(s)), np.pi * (s > 0) / 4
-        p = [
-            one.pressure(
-                one.centre[0] + one.axes[0] * s * np.cos(angle),
-                one.centre[1] + one.axes[1] * s * np.sin(angle),
-            )
-            for one in shapes
-        ]
+        p = [one.pressure(*one.on_ray(s, angle)) for one in shapes]
         share, least = FLOOR
         if len(p) < 2:  # patches alone on the coarser grid: the pressure is as uncertain as the radius
             return share * self.peak_pressure * self._stated.contact_radius / self.contact_radius
@@ -426,7 +418,7 @@ class Solution:
         self, solid: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
     ) -> Array:
         """Change of the stress [Pa] by the uncertain radius, within ``NEAR`` patches of the edge."""
-        shift = self._stated.contact_radius
+        shift = self._uncertain_reach
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         distance = np.hypot(self._to_edge(x, y), z)
         near = distance < NEAR * self.diagnostics.patch_size + shift
@@ -436,6 +428,17 @@ class Solution:
                 self._level, solid, shift, x[near], y[near], z[near], layer
             )
         return change
+
+    @cached_property
+    def _uncertain_reach(self) -> float:
+        """Uncertainty of the distance from centre to edge [m], the largest of all directions."""
+        stated, shapes = self._stated.contact_radius, [level.shape for level in self._levels]
+        if any(shape is None or shape.round for shape in shapes):
+            return stated
+        angle = 2 * np.pi * np.arange(64) / 64
+        fine, second, third = (np.array(shape.on_ray(np.ones(64), angle)) for shape in shapes if shape)
+        last, before = (float(np.hypot(*change).max()) for change in (fine - second, second - third))
+        return max(stated, SMOOTH[0] * last, SMOOTH[1] * before)
 
     @property
     def _stated(self) -> Uncertainty:

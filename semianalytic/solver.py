@@ -82,7 +82,7 @@ def solve(
     reached. None : no refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
     indenter : another shape than a sphere, (name, numbers [m]) as in ``indenter_profile``, pressed as by
-    ``indent`` over a square that is found; without ``accuracy``.
+    ``indent`` over a square that is found; refined to at most 513 patches a side.
 
     Raises ValueError for input without meaning and for a contact as wide as the sphere, NotConverged when the
     iteration stops short.
@@ -99,26 +99,16 @@ def solve(
         pressed = _of_profile(profile_of(indenter, radius), load, approach, edge_correction)
         half_width = FILL * WIDER_SHAPE * hertz_radius(radius, load, approach, body)
         numerics = replace(numerics, tolerance=max(tolerance, 1e-8))
-        return _shaped(pressed, half_width, body, numerics, estimate_uncertainty)
+        return _shaped(pressed, half_width, body, numerics, accuracy, estimate_uncertainty)
     sphere = Sphere(radius, gap)
     pressed = sphere.indenter(load, approach, edge_correction)
     half_width = FILL * _contact_radius(radius, pressed, body, numerics)
     levels = nested.levels(half_width, pressed, body, numerics, estimate_uncertainty)
     if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
         raise NotConverged(f"the contact reaches the rim of the grid at {half_width:g} m; check the moduli")
-    estimate = uncertainty.of_contact(levels, pressed, body, numerics) if estimate_uncertainty else None
-    reached: list[float] = []
-    while estimate and accuracy and edge_correction and not uncertainty.is_met(accuracy, estimate, levels):
-        n = odd(FINER * levels[-1].grid.n)
-        reached.append(estimate.relative_to(levels[-1].scalars, uncertainty.MOVING))
-        if n > (LARGE_GRID if uncertainty.is_stalled(accuracy, reached) else LARGEST_GRID):
-            break
-        grid = replace(levels[-1].grid, n=n, d=2 * half_width / n)
-        try:
-            levels.append(nested.solve_on(grid, levels[-1], pressed, body, numerics))
-        except NotConverged:  # the last solution states what it reached
-            break
-        estimate = uncertainty.of_contact(levels, pressed, body, numerics)
+    estimate = None
+    if estimate_uncertainty:
+        estimate = _refined(levels, accuracy, (LARGEST_GRID, LARGE_GRID), pressed, body, numerics)
     solution = Solution.of_levels(levels[-3:], body, estimate, began)
     if levels[-1].shape is None:
         return solution
@@ -128,21 +118,55 @@ def solve(
     return replace(solution, neighbours=beside)
 
 
+def _refined(
+    levels: list[Level],
+    accuracy: float | None,
+    largest: tuple[int, int],
+    indenter: Indenter,
+    body: Body,
+    numerics: Numerics,
+) -> Uncertainty:
+    """Uncertainty of the last of the ``levels``, to which finer ones are added until it meets ``accuracy``.
+
+    largest : patches a side at most, and where refining no longer lessens the uncertainty
+    """
+    estimate = uncertainty.of_contact(levels, indenter, body, numerics)
+    reached: list[float] = []
+    while accuracy and indenter.edge_correction and not uncertainty.is_met(accuracy, estimate, levels):
+        last = levels[-1].grid
+        n = odd(FINER * last.n)
+        reached.append(estimate.relative_to(levels[-1].scalars, uncertainty.MOVING))
+        if n > largest[uncertainty.is_stalled(accuracy, reached)]:
+            break
+        grid = replace(last, n=n, d=2 * last.half_width / n)
+        try:
+            levels.append(nested.solve_on(grid, levels[-1], indenter, body, numerics))
+        except NotConverged:  # the last solution states what it reached
+            break
+        estimate = uncertainty.of_contact(levels, indenter, body, numerics)
+    return estimate
+
+
 def _shaped(
-    indenter: Indenter, half_width: float, body: Body, numerics: Numerics, estimate_uncertainty: bool
+    indenter: Indenter,
+    half_width: float,
+    body: Body,
+    numerics: Numerics,
+    accuracy: float | None,
+    estimate_uncertainty: bool,
 ) -> Solution:
     """Press an indenter over a square ``FILL`` times as wide as its contact, which coarse grids find."""
     rough, coarse = replace(indenter, edge_correction=False), replace(numerics, patches=ROUGH, tolerance=1e-4)
     for _ in range(20):
         try:
-            found = _pressed(rough, half_width, body, coarse, estimate_uncertainty=False)
+            found = _pressed(rough, half_width, body, coarse, None, estimate_uncertainty=False)
         except NotConverged:
             half_width *= 1.5
             continue
         loaded = np.argwhere(found.patch_pressure > 0)
         extent = float(np.abs(found.nodes[loaded]).max()) + found.diagnostics.patch_size
         if extent > half_width / 3:
-            return _pressed(indenter, FILL * extent, body, numerics, estimate_uncertainty)
+            return _pressed(indenter, FILL * extent, body, numerics, accuracy, estimate_uncertainty)
         half_width = ROOMY * extent
     raise NotConverged(f"no contact within {half_width:g} m carries the load; check the indenter")
 
@@ -212,7 +236,7 @@ def indent(
     body = _body(coatings, substrate, friction, ball)
     numerics = Numerics(patches, tolerance, max_iterations, conversion, threads)
     indenter = _of_profile(profile, load, approach, edge_correction)
-    return _pressed(indenter, half_width, body, numerics, estimate_uncertainty)
+    return _pressed(indenter, half_width, body, numerics, None, estimate_uncertainty)
 
 
 def _of_profile(
@@ -234,7 +258,12 @@ def _of_profile(
 
 
 def _pressed(
-    indenter: Indenter, half_width: float, body: Body, numerics: Numerics, estimate_uncertainty: bool
+    indenter: Indenter,
+    half_width: float,
+    body: Body,
+    numerics: Numerics,
+    accuracy: float | None,
+    estimate_uncertainty: bool,
 ) -> Solution:
     began = time.perf_counter()
     levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)
@@ -242,7 +271,11 @@ def _pressed(
         raise NotConverged(
             f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it"
         )
-    estimate = uncertainty.of_contact(levels, indenter, body, numerics) if estimate_uncertainty else None
+    estimate = None
+    if estimate_uncertainty:
+        # patches alone converge too slowly for it
+        accuracy = accuracy if levels[-1].shape else None
+        estimate = _refined(levels, accuracy, (BESIDE, BESIDE), indenter, body, numerics)
     return Solution.of_levels(levels[-3:], body, estimate, began)
 
 

@@ -65,20 +65,20 @@ def stress(
     *,
     pressures: Sequence[RingPressure],
     body: Body,
-    ratios: Sequence[float] | None = None,
+    places: Sequence[tuple[Array, Array]] | None = None,
 ) -> Array:
     """Stress xx, yy, zz, xy, xz, yz [Pa] under each pressure, (pressures, 6, n).
 
     x, y, z : points [m] of the layers named, (n,) each.  layer : picks the side of an interface.
-    ratios : of x and y under each pressure to those given; 1 by default.
+    places : x and y [m] under each pressure in place of those given.
     """
     nu, f = body.materials[0][1], body.friction
-    ratios = ratios or [1.0] * len(pressures)
-    total = _summed(x, y, z, layer, pressures, ratios, stress_response(body))
+    places = places or [(x, y)] * len(pressures)
+    total = _summed(places, z, layer, pressures, stress_response(body))
     local = np.array([-(1 + 2 * nu) / 2, -(1 + 2 * nu) / 2, -1.0, 0.0, -f, 0.0])
     surface = (z == 0) & (layer == 0)
-    for out, pressure, ratio in zip(total, pressures, ratios, strict=True):
-        out[:, surface] += local[:, None] * pressure.pressure(x[surface] * ratio, y[surface] * ratio)
+    for out, pressure, (x, y) in zip(total, pressures, places, strict=True):
+        out[:, surface] += local[:, None] * pressure.pressure(x[surface], y[surface])
     return total
 
 
@@ -90,10 +90,11 @@ def displacement(
     *,
     pressures: Sequence[RingPressure],
     body: Body,
-    ratios: Sequence[float] | None = None,
+    places: Sequence[tuple[Array, Array]] | None = None,
 ) -> Array:
     """Displacement u_x, u_y, u_z [m], (pressures, 3, n); arguments as in `stress`."""
-    return _summed(x, y, z, layer, pressures, ratios or [1.0] * len(pressures), displacement_response(body))
+    places = places or [(x, y)] * len(pressures)
+    return _summed(places, z, layer, pressures, displacement_response(body))
 
 
 def stress_response(body: Body) -> Response:
@@ -111,25 +112,23 @@ def displacement_response(body: Body) -> Response:
 
 
 def _summed(
-    x: Array,
-    y: Array,
+    places: Sequence[tuple[Array, Array]],
     z: Array,
     layer: Array,
     pressures: Sequence[RingPressure],
-    ratios: Sequence[float],
     response: Response,
 ) -> Array:
     """Components (pressures, components, n): the sums over the rings around each point."""
     out = np.zeros((len(pressures), response.components, z.size))
     if not z.size:
         return out
-    feet, foot = np.unique(np.stack([x, y]), axis=1, return_inverse=True)
+    _, first, foot = np.unique(np.stack(places[0]), axis=1, return_index=True, return_inverse=True)
     foot = foot.ravel()
+    feet = [(x[first], y[first]) for x, y in places]
     body = response.body
-    first = body.thickness[0] if body.coatings else np.inf
-    scale = np.full(feet.shape[1], first, dtype=float)
+    scale = np.full(first.size, body.thickness[0] if body.coatings else np.inf, dtype=float)
     np.minimum.at(scale, foot[z > 0], z[z > 0])
-    around = rings_around(pressures, ratios, feet[0], feet[1], scale)
+    around = rings_around(pressures, feet, scale)
     for number in np.unique(layer):
         members = np.flatnonzero(layer == number)
         members = members[np.argsort(z[members], kind="stable")]

@@ -144,10 +144,7 @@ def _pressure_change(fine: Level, coarse: Level) -> float:
     if fine.shape is None or coarse.shape is None:
         return 0.0
     s = np.sqrt(np.concatenate([[0.0], 1 - np.geomspace(1.0, 1e-3, 40)]))
-    p = [
-        shape.pressure(shape.centre[0] + s * shape.axes[0], shape.centre[1])
-        for shape in (fine.shape, coarse.shape)
-    ]
+    p = [shape.pressure(*shape.on_ray(s, np.zeros(s.size))) for shape in (fine.shape, coarse.shape)]
     return float(np.abs(p[0] - p[1]).max())
 
 

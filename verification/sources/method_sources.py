@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad, keywords
@@ -17,12 +17,22 @@ def solve_semianalytic(problem: Problem, numerics: Mapping[str, Any] | None = No
     """``problem`` by the semi-analytical method."""
     import semianalytic
 
+    if isinstance(problem, CoatedContact) and problem.indenter is not None and not numerics:
+        return _shape_by_patches(problem)
     if isinstance(problem, LoadingCurve):
         from verification.sources.loading_solution import loading
 
         return loading(problem, partial(solve_semianalytic, numerics=numerics))
     solve = semianalytic.solve_prescribed if isinstance(problem, PrescribedLoad) else semianalytic.solve
     return solve(**keywords(problem), **(numerics or {}))
+
+
+@lru_cache(maxsize=1)
+def _shape_by_patches(problem: CoatedContact) -> Any:
+    """An indenter that is no sphere, solved once: elements begin with the pressure of patches."""
+    import semianalytic
+
+    return semianalytic.solve(**keywords(problem))
 
 
 def solve_elements(problem: Problem, numerics: Mapping[str, Any] | None = None) -> Any:
@@ -42,7 +52,7 @@ def _shape_by_elements(problem: CoatedContact, numerics: Mapping[str, Any]) -> A
     """An indenter that is no sphere: elements correct a pressure of patches until their gap vanishes."""
     import fem_reference
 
-    start = solve_semianalytic(problem, {"patches": 257, "estimate_uncertainty": False})
+    start = _shape_by_patches(problem)
     given = {name: value for name, value in keywords(problem).items() if name != "ball"}
     return fem_reference.solve_shape(start=start.pressure, **given, **numerics)
 
