@@ -16,7 +16,7 @@ MODULES = sorted(
 )
 MOST_IN_A_FOLDER = 13
 MOST_LINES = 450
-# A room imports from those before it; rooms on one floor do not import each other.
+# A room imports from those before it; rooms on one floor do not import each other. The manual draws them.
 FLOORS = (
     ("problem",),
     ("sources",),
@@ -59,6 +59,13 @@ def test_verification_shows_its_rooms_and_the_command_line():
     assert [path.stem for path in MODULES if path.parent == here] == ["cli"]
     found = {path.relative_to(here).parts[0] for path in MODULES if here in path.parents} - {"cli.py"}
     assert found == FLOOR.keys()
+
+
+def test_the_picture_in_the_manual_shows_every_floor_in_its_order():
+    page = (ROOT / "verification" / "manual" / "source" / "extend.md").read_text("utf-8")
+    picture = page.partition("```text\n")[2].partition("```")[0]
+    drawn = [tuple(line.partition("|")[0].split()) for line in picture.splitlines()]
+    assert drawn == [*reversed(FLOORS), PACKAGES[:2]]
 
 
 def test_no_room_holds_more_than_thirteen_modules():
