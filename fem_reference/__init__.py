@@ -7,11 +7,11 @@
 True
 """
 
+from .contact_solver import solve, solve_prescribed
 from .levels import NotConverged
 from .off_axis import PressedSolid, check_pressure
 from .shaped_contact import ShapedContact, solve_shape
-from .solution import Solution
-from .solver import solve, solve_prescribed
+from .solved_contact import Solution
 from .vtu import plane_mesh, write_vtu
 
 __all__ = [

@@ -32,7 +32,7 @@ from functools import cached_property
 import numpy as np
 
 from .companion_points import REACH, ComparisonPoints, Pair, largest_around, samples
-from .contact import FixedRadiusContact
+from .fixed_radius import FixedRadiusContact
 from .levels import COMPANION
 from .location import LocatedPoints, Uncached
 from .recovery import TRACTIONS, HarmonicField

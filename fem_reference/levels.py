@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from .axisymmetric import Discretisation
-from .contact import FixedRadiusContact, solve_at_radius
+from .fixed_radius import FixedRadiusContact, solve_at_radius
 from .mesh import EDGE_SIZE, Grading, MeridianMesh, meridian_mesh
 from .scaling import LayeredSolid, first_radius
 
@@ -81,8 +81,8 @@ def find_contact_radius(
 
     The load of a rigid paraboloid rises with the contact radius, W ~ a^3 on a homogeneous solid, so log W is
     nearly linear in log a and Newton's method with the slope d log W / d log a, which every solution gives to
-    some thousandths (``contact``), converges in a few steps. Small steps stretch the meshes, large ones make
-    new ones.
+    some thousandths (``fixed_radius``), converges in a few steps. Small steps stretch the meshes, large ones
+    make new ones.
 
     Returns the last contact and every solve. Raises NotConverged after ``_MOST_SOLVES``, or where the load is
     not a positive number.

@@ -20,7 +20,7 @@ from .location import LocatedPoints, SolidPoints, solid_points
 from .mesh import Grading, MeridianMesh, meridian_mesh, surface_size
 from .recovery import HarmonicField, stress_of
 from .scaling import Coatings, LayeredSolid, Units
-from .solution import cartesian, tensor
+from .solved_contact import cartesian, tensor
 from .validation import check_choice, check_materials, check_positive, check_proportions
 
 Pressure = Callable[[Any, Any], Any]

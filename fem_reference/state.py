@@ -7,7 +7,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from .axisymmetric import Discretisation
-from .contact import Ball, FixedRadiusContact
+from .fixed_radius import Ball, FixedRadiusContact
 from .loading import solve_traction
 from .location import SolidPoints
 from .mesh import MeridianMesh

@@ -12,7 +12,7 @@ import numpy as np
 from skfem import MeshTri
 
 if TYPE_CHECKING:
-    from .solution import Solution
+    from .solved_contact import Solution
 
 STRESSES = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 

@@ -5,7 +5,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import RectBivariateSpline
 
 from semianalytic import contact, convolution, influence, prescribed, smooth_edge
 from semianalytic.edge_shape import Shape
@@ -147,6 +148,19 @@ class Level:
             return x, y
         return self.shape.matching(first.shape, x, y)
 
+    def pressure(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """Contact pressure [Pa], 0 outside; as `Solution.pressure`."""
+        smooth, pressure = self.smooth(), self.grid.whole(self.found.pressure)
+        if smooth is None:
+            touched = interpolated(self.nodes, pressure**2, x, y, order=1) > 0  # the cubic may ripple beyond
+            square = interpolated(self.nodes, pressure**2, x, y)
+            return np.sqrt(np.maximum(np.where(touched, square, 0), 0))
+        value = smooth.pressure(x, y)
+        if self.rest is not None and self.shape is not None:  # its interpolation ripples beyond the edge
+            rest = interpolated(self.nodes, self.grid.whole(self.rest), x, y)
+            value = value + np.where(self.shape.inside(np.asarray(x), np.asarray(y)) > 0, rest, 0.0)
+        return np.maximum(value, 0)
+
     @cached_property
     def rest(self) -> Array | None:
         """Pressure of the patches less that of the shape [Pa], inside; None where it is their own error.
@@ -244,6 +258,16 @@ class LevelProblem:
             return self.precondition(np.maximum(np.min(self.gap) + approach - self.gap, 0.0))
         p, g, E_star = before.found.pressure, before.found.gap, self.body.contact_modulus
         return prolong(p, g, before.grid, self.grid, self.window, E_star)
+
+
+def interpolated(nodes: Array, values: Array, x: ArrayLike, y: ArrayLike, order: int = 3) -> Array:
+    """Spline through the values at the nodes, 0 outside them."""
+    x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+    inside = np.maximum(np.abs(x), np.abs(y)) <= nodes[-1] * (1 + 1e-12)
+    value = np.zeros(x.shape)
+    spline = RectBivariateSpline(nodes, nodes, values, kx=order, ky=order)
+    value[inside] = spline(x[inside], y[inside], grid=False)
+    return value
 
 
 def _above_highest(p: Array) -> float:

@@ -26,11 +26,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from semianalytic.edge_shape import Shape
+from semianalytic.ring_quadrature import from_gap, gauss, panels
 
 Array = NDArray[np.floating]
-Step = Callable[[float], float]
 
-LEAST = 1e-9  # distance from the edge, over the width of the contact, below which a point lies on it
 AROUND = 128  # angles at which a contour that is no circle is sampled,
 RING = 48  # and a ring around a point
 BISECTIONS, SECANTS = 6, 9  # steps to where a ring crosses the edge: t is within 1e-9 of 0
@@ -114,9 +113,9 @@ def _around(discs: Sequence[Disc], x: Array, y: Array, scale: Array) -> list[Rin
     least = np.full(r0.size, np.inf)
     np.minimum.at(least, same, scale)
     marks = [([abs(a - one), a + one], one < a) for one in r0]
-    foot, radius, weight = _panels(marks, least, first.radial)
+    foot, radius, weight = panels(marks, least, first.radial)
     harmonics = np.zeros((len(discs), 7, foot.size))
-    s, w = _gauss(first.angular)
+    s, w = gauss(first.angular)
     for begin in range(0, foot.size, AT_ONCE // first.angular):
         part = slice(begin, begin + AT_ONCE // first.angular)
         r, rho = r0[foot[part]], radius[part]
@@ -128,7 +127,7 @@ def _around(discs: Sequence[Disc], x: Array, y: Array, scale: Array) -> list[Rin
         delta = np.where(
             crossing, np.pi - np.arccos(np.clip(kappa, -1, 1)), np.arccosh(np.maximum(-kappa, 1.0))
         )
-        beta, slope = _from_gap(delta, np.full(rho.shape, np.pi), crossing, s)
+        beta, slope = from_gap(delta, np.full(rho.shape, np.pi), crossing, s)
         cosine = np.cos(beta)
         square = np.minimum((r - rho)[:, None] ** 2 + product[:, None] * (1 + cosine), a**2)
         measure = 2 * slope * w
@@ -166,7 +165,7 @@ class SmoothContour:
         """The same, anew."""
         inside = self.shape.polynomials(x, y)[0] > 0
         marks = list(zip(self._touching(x, y), inside.tolist(), strict=True))
-        foot, radius, weight = _panels(marks, scale, self.radial)
+        foot, radius, weight = panels(marks, scale, self.radial)
         harmonics = np.empty((7, foot.size))
         step = AT_ONCE // (8 * self.angular)
         for begin in range(0, foot.size, step):
@@ -235,8 +234,8 @@ class SmoothContour:
         width = np.abs(high - low)
         missed = np.sqrt(np.maximum(2 * t_low, 0) / np.maximum(curvature, 1e-300))
         delta = np.where(crossing, outer * width, missed)
-        s, w = _gauss(self.angular)
-        beta, slope = _from_gap(delta, width, crossing, s)
+        s, w = gauss(self.angular)
+        beta, slope = from_gap(delta, width, crossing, s)
         phi = low[:, None] + np.sign(high - low)[:, None] * beta
         cos, sin = np.cos(phi), np.sin(phi)
         p = self.shape.pressure(
@@ -303,7 +302,7 @@ def _around_node(*places: bytes) -> Rings:
     corner = 2**1.5
     r, towards = np.hypot(x, y), np.arctan2(-y, -x)
     marks = [([max(one - corner, 0.0), one + corner], False) for one in r]
-    foot, radius, weight = _panels(marks, scale, NODE[1])
+    foot, radius, weight = panels(marks, scale, NODE[1])
     # half the angle within which a ring crosses the circle around the node
     kappa = (r[foot] ** 2 + radius**2 - corner**2) / np.maximum(2 * r[foot] * radius, 1e-30)
     width = np.arccos(np.clip(kappa, -1, 1))
@@ -343,19 +342,6 @@ def _turned(rings: Rings, same: NDArray[np.intp], angle: Array) -> Rings:
         harmonics[2 * m - 1] = even * np.cos(m * angle)[foot]
         harmonics[2 * m] = even * np.sin(m * angle)[foot]
     return Rings(foot, rings.radius[at], rings.weight[at], harmonics)
-
-
-def _from_gap(delta: Array, width: Array, crossing: NDArray[np.bool_], s: Array) -> tuple[Array, Array]:
-    """beta and d beta/ds at s in [0, 1] of arcs from the edge of a gap to ``width`` from its middle, (n,
-    nodes)."""
-    delta = np.clip(delta, 1e-12, np.where(crossing, width, 4.0))
-    ratio = width / delta
-    top = np.where(crossing, np.arccosh(np.maximum(ratio, 1)), np.arcsinh(ratio))[:, None]
-    mu = top * s
-    e = np.exp(mu)
-    c, h = (e + 1 / e) / 2, (e - 1 / e) / 2
-    of_gap = crossing[:, None]
-    return delta[:, None] * np.where(of_gap, c, h), delta[:, None] * top * np.where(of_gap, h, c)
 
 
 def _crossing(t: Callable[[Array], Array], t_low: Array, t_high: Array) -> Array:
@@ -407,80 +393,5 @@ def _segments(
     ahead = np.where(index == last, phi[following] + 2 * np.pi, phi[following])
     use = low != low[following]
     at_low = np.where(low, index, following)[use]
-    start, end = phi[use], ahead[use]
-    low_first = low[use]
-    return (
-        ring[use],
-        np.where(low_first, start, end),
-        np.where(low_first, end, start),
-        np.maximum(curvature[at_low], 0.0),
-    )
-
-
-def _panels(
-    marks: list[tuple[list[float], bool]], scale: Array, nodes: int
-) -> tuple[NDArray[np.intp], Array, Array]:
-    """Gauss points on the rings of each point: its index, rho, weight rho d rho, (n,) each.
-
-    marks : radii at which rings touch the edge, ascending, and whether the point is inside.
-    """
-    foot, radius, weight = [], [], []
-    for k, ((touches, inside), depth) in enumerate(zip(marks, scale, strict=True)):
-        rho, measure = _graded(touches, inside, float(depth), nodes)
-        foot.append(np.full(rho.size, k))
-        radius.append(rho)
-        weight.append(measure * rho)
-    return np.concatenate(foot), np.concatenate(radius), np.concatenate(weight)
-
-
-def _graded(touches: list[float], inside: bool, scale: float, nodes: int) -> tuple[Array, Array]:
-    """Gauss points and weights of rho up to the last touching ring, from the first or, inside, from 0."""
-    s, w = _gauss(nodes)
-    crowded, slope = s**4, 4 * s**3 * w
-    points: list[Array] = []
-    weights: list[Array] = []
-
-    def plain(a: float, b: float, longest: Step) -> None:
-        while a < b * (1 - 1e-12):
-            step = longest(a)
-            step = b - a if step > 0.7 * (b - a) else step
-            points.append(a + step * s)
-            weights.append(step * w)
-            a += step
-
-    first, last = touches[0], touches[-1]
-    least = max(first, LEAST * last)
-    if inside and first > 0:
-        near = 0.75 * first
-        plain(0.0, near, lambda rho: min(np.hypot(rho, scale), 0.75 * (first - rho)))
-        points.append(first - (first - near) * crowded[::-1])
-        weights.append((first - near) * slope[::-1])
-    for low, high in pairwise([first, *touches[1:-1], last]):
-        if high <= low:
-            continue
-        # graded from the lower end, from the middle on towards the upper one
-        to = (low + high) / 2
-        begin = min(0.5 * least, (to - low) / 2, scale if low == 0 else np.inf)
-        points.append(low + begin * crowded)
-        weights.append(begin * slope)
-        plain(low + begin, to, _growing(low, scale))
-        end = (high - to) / 2 if high == last else min(0.5 * least, (high - to) / 2)
-        plain(to, high - end, _shrinking(high, end, scale))
-        points.append(high - end * crowded[::-1])
-        weights.append(end * slope[::-1])
-    return np.concatenate(points), np.concatenate(weights)
-
-
-def _growing(low: float, scale: float) -> Step:
-    return lambda rho: min(float(np.hypot(rho, scale)), 1.5 * (rho - low))
-
-
-def _shrinking(high: float, end: float, scale: float) -> Step:
-    return lambda rho: min(float(np.hypot(rho, scale)), max(0.6 * (high - rho), end))
-
-
-@lru_cache
-def _gauss(nodes: int) -> tuple[Array, Array]:
-    """Gauss-Legendre points and weights on [0, 1]."""
-    s, w = np.polynomial.legendre.leggauss(nodes)
-    return (1 + s) / 2, w / 2
+    start, end = np.where(low[use], (phi[use], ahead[use]), (ahead[use], phi[use]))
+    return ring[use], start, end, np.maximum(curvature[at_low], 0.0)

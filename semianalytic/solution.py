@@ -12,12 +12,11 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import RectBivariateSpline
 from scipy.ndimage import distance_transform_cdt, maximum_filter
 
 from semianalytic import fields
 from semianalytic.inputs import Body, check_finite
-from semianalytic.level import Level
+from semianalytic.level import Level, interpolated
 from semianalytic.neighbours import Neighbours
 from semianalytic.uncertainty import SMOOTH, Uncertainty, safety
 
@@ -173,19 +172,7 @@ class Solution:
         With a smooth edge that of its shape, fitted to the patches; of patches alone interpolated between
         them by p^2.
         """
-        return self._pressure_of(self._level, x, y)
-
-    @staticmethod
-    def _pressure_of(level: Level, x: ArrayLike, y: ArrayLike) -> Array:
-        smooth, pressure = level.smooth(), level.grid.whole(level.found.pressure)
-        if smooth is None:
-            touched = _at(level.nodes, pressure**2, x, y, order=1) > 0  # the cubic may oscillate beyond
-            return np.sqrt(np.maximum(np.where(touched, _at(level.nodes, pressure**2, x, y), 0), 0))
-        value = smooth.pressure(x, y)
-        if level.rest is not None and level.shape is not None:  # its interpolation ripples beyond the edge
-            rest = _at(level.nodes, level.grid.whole(level.rest), x, y)
-            value = value + np.where(level.shape.inside(np.asarray(x), np.asarray(y)) > 0, rest, 0.0)
-        return np.maximum(value, 0)
+        return self._level.pressure(x, y)
 
     def stress(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
@@ -259,20 +246,20 @@ class Solution:
         if self._level.shape is not None:
             return self._smooth_uncertainty(x, y)
         i, j = self.nodes[:, None], self.nodes[None, :]
-        first, second, third = (self._pressure_of(level, i, j) for level in self._levels)
+        first, second, third = (level.pressure(i, j) for level in self._levels)
         ratio = self._refined
         difference = np.maximum(safety(ratio) * np.abs(first - second), np.abs(second - third) / 6)
         reach = 2 * int(np.ceil(2 * ratio)) + 1
         widened = maximum_filter(difference, size=reach, mode="nearest")
-        total = _at(self.nodes, widened, x, y, order=1) + (2 * floor + RESOLUTION) * self.peak_pressure
-        return 2 * total + self._rim(x, y, 0.0)
+        least = (2 * floor + RESOLUTION) * self.peak_pressure
+        return 2 * (interpolated(self.nodes, widened, x, y, order=1) + least) + self._rim(x, y, 0.0)
 
     def _rim(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Error [Pa] that a staircase makes of an edge: the highest pressure beside it, felt over a patch."""
         d, loaded = self.diagnostics.patch_size, np.pad(self.patch_pressure > 0, 1)
         inside, outside = (distance_transform_cdt(one, metric="chessboard") for one in (loaded, ~loaded))
         highest = float(self.patch_pressure[inside[1:-1, 1:-1] == 1].max(initial=0.0))
-        away = _at(self.nodes, (np.maximum(inside, outside) - 1.0)[1:-1, 1:-1], x, y, order=1) * d
+        away = interpolated(self.nodes, (np.maximum(inside, outside) - 1.0)[1:-1, 1:-1], x, y, order=1) * d
         return highest * d / (d + np.hypot(away, z))
 
     def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike) -> Array:
@@ -281,9 +268,7 @@ class Solution:
         fine = self._level.shape
         assert fine is not None
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        p, second, third = (
-            self._pressure_of(level, *level.matching(self._level, x, y)) for level in self._levels
-        )
+        p, second, third = (level.pressure(*level.matching(self._level, x, y)) for level in self._levels)
         total = self._change(np.abs(p - second), np.abs(second - third), x, y)
         total = total + self._floor + self._near_ripple(x, y) + self._other_parameters * self.peak_pressure
         total = np.maximum(total, self._misfit(x, y, 0.0))
@@ -316,12 +301,7 @@ class Solution:
         return self.stress_with_uncertainty(x, y, z, layer, body)[1]
 
     def stress_with_uncertainty(
-        self,
-        x: ArrayLike,
-        y: ArrayLike,
-        z: ArrayLike,
-        layer: int | None = None,
-        body: str = "flat",
+        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
     ) -> tuple[Array, Array]:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
@@ -452,13 +432,3 @@ class Solution:
         rows = self._stated.budget
         other = sum(row[2] for row in rows if row[0] == "peak_pressure" and row[1] != "patch size")
         return other / self.peak_pressure
-
-
-def _at(nodes: Array, values: Array, x: ArrayLike, y: ArrayLike, order: int = 3) -> Array:
-    """Spline through the values at the nodes, 0 outside them."""
-    x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-    inside = np.maximum(np.abs(x), np.abs(y)) <= nodes[-1] * (1 + 1e-12)
-    value = np.zeros(x.shape)
-    spline = RectBivariateSpline(nodes, nodes, values, kx=order, ky=order)
-    value[inside] = spline(x[inside], y[inside], grid=False)
-    return value

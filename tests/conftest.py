@@ -2,14 +2,13 @@
 
 import os
 import re
-import time
 import zlib
 
 import pytest
 from rich.console import Console
 from threadpoolctl import threadpool_limits
 
-SLOW_PARTS = 7
+SLOW_PARTS = 14  # two for each day of a week, see .ci/run
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -34,18 +33,6 @@ def pytest_addoption(parser):
     parser.addoption(
         "--slow-part", type=int, choices=range(SLOW_PARTS), help="one part of the slow tests alone"
     )
-    parser.addoption("--slow-seconds", type=float, help="begin no slow test later than this")
-    parser.addoption("--slow-order", help="any word, such as a commit: files in an order that it decides")
-
-
-BEGIN = time.monotonic()
-
-
-def pytest_runtest_setup(item):
-    seconds = item.config.getoption("--slow-seconds")
-    late = seconds is not None and time.monotonic() - BEGIN > seconds
-    if late and item.get_closest_marker("slow"):
-        pytest.skip(f"{seconds:g} s are over")
 
 
 def pytest_collection_modifyitems(config, items):
@@ -60,6 +47,3 @@ def pytest_collection_modifyitems(config, items):
     other = {item for item, name in groups.items() if zlib.crc32(name.encode()) % SLOW_PARTS != part}
     config.hook.pytest_deselected(items=list(other))
     items[:] = [item for item in items if item not in other]
-    word = config.getoption("--slow-order")
-    if word:
-        items.sort(key=lambda item: zlib.crc32(f"{word} {item.location[0]}".encode()))

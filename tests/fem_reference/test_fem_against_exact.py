@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fem_reference import solve
-from fem_reference.solver import QUALITY
+from fem_reference.contact_solver import QUALITY
 from verification.sources.references import integral_equation
 
 R, W, E = 10e-3, 20.0, 210e9

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fem_reference import NotConverged, levels, solve
-from fem_reference.solver import CONTRASTS, QUALITY, _size
+from fem_reference.contact_solver import CONTRASTS, QUALITY, _size
 
 E = 210e9
 # scalars of numpy are as good as floats

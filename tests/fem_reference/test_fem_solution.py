@@ -9,8 +9,8 @@ import pytest
 
 from fem_reference import solve, solve_prescribed
 from fem_reference.companion_points import samples
-from fem_reference.contact import solve_at_radius
 from fem_reference.estimate import SAFETY, contact_estimates, estimates
+from fem_reference.fixed_radius import solve_at_radius
 from fem_reference.levels import COMPANION, companion_grading, final_grading
 from fem_reference.state import ElasticState
 

@@ -3,7 +3,6 @@
 import datetime
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
 
 from rich.markup import escape
@@ -12,12 +11,12 @@ from verification.cases.case_file import default_cases
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import BASELINE, require_checkout
-from verification.commands.common.shared_options import AsJson, BaselineFolder, Quiet
-from verification.commands.common.terminal import named_table, print_json, print_out
+from verification.commands.common.shared_options import BaselineFolder, Quiet
+from verification.commands.common.terminal import print_out
 from verification.credibility.self_tests import self_tests
 from verification.judging.verdict import Outcome
-from verification.regression.baseline_change import Baseline, updated
-from verification.regression.baseline_file import path_in, read_baseline, write_baseline
+from verification.regression.baseline_change import updated
+from verification.regression.baseline_file import read_baseline, write_baseline
 from verification.running.checked_files import locked
 from verification.running.stored_run import StoredRun, confirm, read_run
 
@@ -61,27 +60,6 @@ def update(*runs: Path, why: str = "", baseline: BaselineFolder = BASELINE, quie
     return 0
 
 
-@with_exit_code
-def show(*, baseline: BaselineFolder = BASELINE, as_json: AsJson = False) -> int:
-    """Show the numbers in the baseline, case by case, with every update and its reason."""
-    stored = read_baseline(baseline)
-    if stored is None:
-        raise CommandError(
-            f'{path_in(baseline)}: there is no baseline; make one with: coatcheck baseline update --why "..."'
-        )
-    if as_json:
-        print_json(
-            {
-                "path": str(path_in(baseline)),
-                "cases": {name: sum(n.count for n in found) for name, found in stored.cases.items()},
-                "history": [asdict(update) for update in stored.history],
-            }
-        )
-    else:
-        _print(stored)
-    return 0
-
-
 def _refuse_unfit(runs: Sequence[StoredRun]) -> None:
     """Raises CommandError with the reason why the runs cannot be a baseline."""
     run = runs[0]
@@ -105,18 +83,3 @@ def _refuse_unfit(runs: Sequence[StoredRun]) -> None:
             raise CommandError(
                 f"{run.path}: {result.name} {result.outcome}; a baseline is made where every case agrees"
             )
-
-
-def _print(stored: Baseline) -> None:
-    last = stored.last
-    numbers = named_table("case", "profiles", "numbers")
-    for name, found in stored.cases.items():
-        numbers.add_row(escape(name), str(len(found)), str(sum(n.count for n in found)))
-    history = named_table("when", "commit", "changed", "largest", "why")
-    for item in stored.history:
-        count = sum(count for count, _ in item.changes.values())
-        largest = max((change for _, change in item.changes.values() if change is not None), default=None)
-        changed = (str(count or "-"), "-" if largest is None else f"{largest:.1e}")
-        history.add_row(item.when, item.commit or "-", *changed, escape(item.why))
-    print_out(numbers, "", history, "", escape(f"{last.numbers} numbers, on {last.machine}"))
-    print_out(escape(", ".join(f"{name} {version}" for name, version in last.versions.items())))

@@ -68,4 +68,4 @@ class AlarmRecord:
 
 
 _FILE = RecordFile(AlarmRecord, "alarms.json", READABLE, "false alarms", "measure it again")
-path_in, write_record, read_record = _FILE.path_in, _FILE.write, _FILE.read
+write_record, read_record = _FILE.write, _FILE.read

@@ -8,7 +8,7 @@ width : a_h/R;   friction : f;   ball : share of the ball in the contact's compl
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import prod
 from pathlib import Path
@@ -46,9 +46,6 @@ class Place:
         E_star = SUBSTRATE / (1 - self.nu**2) * (1 - self.ball)
         load = 4 * a_h**3 * E_star / (3 * RADIUS)
         return CoatedContact(RADIUS, load, (coating,), (SUBSTRATE, self.nu), self.friction, ball)
-
-
-COORDINATES = tuple(field.name for field in fields(Place))
 
 
 def places_of(problem: CoatedContact) -> tuple[Place, ...]:
@@ -331,4 +328,4 @@ def _fewer(nodes: Array, x: float, most: int) -> list[Weights]:
 
 
 _FILE = RecordFile(AssumptionMaps, "assumptions.json", (SCHEMA,), "maps of the assumptions", "make it again")
-path_in, write_maps, read_maps = _FILE.path_in, _FILE.write, _FILE.read
+write_maps, read_maps = _FILE.write, _FILE.read

@@ -102,4 +102,4 @@ class EnclosureRecord:
 
 
 _FILE = RecordFile(EnclosureRecord, "enclosures.json", (SCHEMA,), "enclosures", "make it again")
-path_in, write_record, read_record = _FILE.path_in, _FILE.write, _FILE.read
+write_record, read_record = _FILE.write, _FILE.read

@@ -85,17 +85,6 @@ def seconds(value: Any) -> str:
     return f"{number:.2f} s" if number < 10 else f"{number:.1f} s"
 
 
-def factor(worse: Any, better: Any) -> str:
-    """How many times ``better`` goes into ``worse``, two digits: "3.2", "4600", "1.4e9"."""
-    large, small = _number(worse), _number(better)
-    if large is None or small is None or small <= 0:
-        return "undefined"
-    ratio = large / small
-    if not 0.01 <= ratio < 1e5:
-        return scientific(ratio)
-    return plain(float(f"{ratio:.1e}"), 9)
-
-
 def _number(value: Any) -> float | None:
     try:
         number = float(value)

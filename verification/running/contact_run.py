@@ -128,7 +128,8 @@ def decide(
             return Verdict(Outcome.NO_RESULT, f"{source} gives no {claim.quantity} on {claim.line}")
         sides.append(side)
     a, b = sides
-    p0, edge, delta = (_of_best(name, profiles, outcomes) for name in SCALARS)
+    scales = ("peak_pressure", "contact_radius", "approach")
+    p0, edge, delta = (_of_best(name, profiles, outcomes) for name in scales)
     divisor = QUANTITIES[claim.quantity].divisor
     scale = divisor(float(b.value[0]), problem.p_h, p0, edge, problem.delta_h, delta)
     excluded = np.abs(np.abs(a.position) - edge) < claim.edge * edge

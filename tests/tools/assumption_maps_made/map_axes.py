@@ -1,12 +1,12 @@
 """Axes over which the map of each assumption is measured, with the model that measures it."""
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from itertools import product
 
 from assumption_maps_made.small_strain_cost import of_small_strains
 from verification.credibility.model_error import QUANTITIES
-from verification.evidence.assumption_maps import COORDINATES, Place
+from verification.evidence.assumption_maps import Place
 from verification.problem.coated_contact import CoatedContact
 from verification.sources.assumptions.contact_change import Change, of_goodman, of_sphere
 from verification.sources.assumptions.finite_bodies import of_half_spaces
@@ -42,7 +42,7 @@ class MapAxes:
         fixed = Place()
         return {
             name: self.axes.get(name, (getattr(fixed, name),))
-            for name in COORDINATES
+            for name in (one.name for one in fields(Place))
             if name not in self.independent_of
         }
 

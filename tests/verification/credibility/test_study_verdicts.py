@@ -72,7 +72,7 @@ def test_every_part_meets_its_limit(clean):
         ),
         (
             Edit(
-                "semianalytic.rings:_panels",
+                "semianalytic.ring_quadrature:panels",
                 "weight.append(measure * rho)",
                 "weight.append(1.0001 * measure * rho)",
             ),

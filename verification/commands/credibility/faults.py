@@ -30,7 +30,7 @@ from verification.commands.common.task_progress import (
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
 from verification.commands.common.terminal_bar import require_gmsh
 from verification.running.case_tasks import case_task
-from verification.running.checked_files import locked, write_atomically
+from verification.running.checked_files import locked
 
 if TYPE_CHECKING:
     from verification.credibility.faults.fault_planting import Fault
@@ -63,7 +63,8 @@ def faults(
         group: Try one group: material, ball, frf, conversion_fft, conjugate_gradients, grids, edge,
             stress, rings, finite_elements, fields, references, harness, coverage.
         listed: List the faults instead of trying them.
-        output: Directory of the matrix, faults.html with faults.json, of the clean runs, of the trials.
+        output: Directory of the matrix, faults.json, which coatcheck report shows with --records OUTPUT, of
+            the clean runs, of the trials.
         record: Store the matrix of all faults as RECORDS/faults.json, for the credibility page of a report.
         time_limit: Seconds one fault may take before it is stopped and counted as not tried.
     """
@@ -91,7 +92,6 @@ def faults(
 
     from verification.credibility.faults import fault_campaign
     from verification.evidence.fault_record import to_json, write_record
-    from verification.report.credibility.detection_sections import faults_page
 
     started = datetime.datetime.now(datetime.UTC)
     with locked(output):
@@ -103,15 +103,13 @@ def faults(
         fresh = {trial.fault: trial for trial in solve(trials, jobs, time_limit, quiet or as_json)}
         info = run_info("coatcheck faults", started, jobs)
         found = fault_campaign.record_of([kept.get(f.name) or fresh[f.name] for f in wanted], info)
-        write_record(output, found)
-        page = output / "faults.html"
-        write_atomically(page, faults_page(found))
+        matrix = write_record(output, found)
         if record:
             write_record(records, found)
     if as_json:
         print_json(to_json(found))
     elif not quiet:
-        _print(found, page)
+        _print(found, matrix)
     return 0 if found.passed else 1
 
 
@@ -139,7 +137,7 @@ def _list(wanted: Sequence["Fault"], as_json: bool) -> None:
     return print_out(table)
 
 
-def _print(found: "Record", page: Path) -> None:
+def _print(found: "Record", matrix: Path) -> None:
     from verification.evidence.fault_record import GROUPS, Catch
 
     shown = [catch for catch in Catch if any(row.catch is catch for row in found.rows)]
@@ -167,4 +165,4 @@ def _print(found: "Record", page: Path) -> None:
     text += f"{found.as_predicted} by the predicted check"
     if found.controls:
         text += f"; {len(found.alarms)} alarms in {len(found.controls)} negative controls"
-    print_out(f"{text}; {found.seconds:.0f} s; matrix: {escape(str(page))}")
+    print_out(f"{text}; {found.seconds:.0f} s; matrix: {escape(str(matrix))}")

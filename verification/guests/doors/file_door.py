@@ -17,6 +17,7 @@ from typing import Any
 from verification.guests.exam_subjects import Subject
 from verification.guests.guest_description import Guest
 from verification.guests.guest_protocol import VERSION, Answer, ProtocolError, Question, check
+from verification.page.page_parts import written
 from verification.problem.quantity import unit_of
 from verification.running.checked_files import StoreError, read_bounded, write_atomically
 
@@ -47,8 +48,8 @@ def pack(guest: Guest, case: Subject, question: Question) -> Path:
             points.append([len(points) - 1, line.line, repr(x), repr(y), repr(z), layer, *cells])
     texts = {
         "problem.json": json.dumps(question.model_dump() | {"units": units.model_dump()}, indent=1) + "\n",
-        "contact.csv": _written([["quantity", "unit", "value", "uncertainty"], *rows]),
-        "points.csv": _written(points),
+        "contact.csv": written([["quantity", "unit", "value", "uncertainty"], *rows]),
+        "points.csv": written(points),
     }
     for name, text in texts.items():
         if not (folder / name).exists() and (name != "points.csv" or question.lines):
@@ -123,12 +124,6 @@ def _number(text: str, where: str) -> float:
     except ValueError:
         shown = text.strip()[:20]
         raise ProtocolError(f"{where}: {shown!r} is not a number" if shown else f"{where} is empty") from None
-
-
-def _written(rows: list[list[Any]]) -> str:
-    out = io.StringIO()
-    csv.writer(out, lineterminator="\n").writerows(rows)
-    return out.getvalue()
 
 
 def _unit(unit: str, units: Any) -> str:

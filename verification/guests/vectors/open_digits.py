@@ -1,14 +1,13 @@
 """The open digits as a file: JSON with a schema, CSV, checksums."""
 
-import csv
 import gzip
 import hashlib
-import io
 import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from verification.page.page_parts import written
 from verification.problem.quantity import unit_of
 
 FILE = Path(__file__).parents[1] / "shipped" / "vectors.json.gz"
@@ -46,13 +45,7 @@ def csv_texts(vectors: Sequence[dict[str, Any]]) -> dict[str, str]:
                 values += [
                     [v["name"], q, unit_of(q), x, z, points["layer"], value, U] for x, z, value, U in places
                 ]
-    return {"problems.csv": _csv(problems), "values.csv": _csv(values)}
-
-
-def _csv(rows: list[list[Any]]) -> str:
-    out = io.StringIO()
-    csv.writer(out, lineterminator="\n").writerows(rows)
-    return out.getvalue()
+    return {"problems.csv": written(problems), "values.csv": written(values)}
 
 
 def shipped() -> dict[str, Any]:

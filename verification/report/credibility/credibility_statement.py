@@ -5,7 +5,6 @@ further requirements of NASA-STD-7009A (2016), Standard for Models and Simulatio
 of the result, evidence for each.
 """
 
-from collections import Counter
 from collections.abc import Sequence
 from math import isfinite
 from statistics import median
@@ -34,7 +33,6 @@ from verification.page.page_parts import (
 )
 from verification.page.source_labels import pair_label, source_label
 from verification.page.svg_loglog import draw_histogram
-from verification.problem.quantity import SCALARS
 from verification.report.report_material import Evidence, Material
 from verification.report.report_words import stated
 from verification.report.sections.accuracy_section import accuracies, coverage_table
@@ -87,25 +85,6 @@ def _design_table(orders: Sequence[DesignOrder]) -> Table:
             ("observed, ∇u", lambda one: observed(one.gradient, one)),
             ("error, finer mesh", lambda one: one.errors[1]),
         ],
-    )
-
-
-def _parameter_table(results: Sequence[CaseResult]) -> Table:
-    counts: dict[tuple[str, str], Counter[str]] = {}
-    for result in results:
-        for source in result.sources:
-            for quantity in SCALARS:
-                rows = [(value, parameter) for q, parameter, value in source.budget if q == quantity]
-                if rows:
-                    counts.setdefault((source.source, quantity), Counter())[max(rows)[1]] += 1
-    found = []
-    for (name, quantity), counter in sorted(counts.items()):
-        text = ", ".join(f"{parameter} ({count})" for parameter, count in counter.most_common())
-        found.append(row(source_label(name), quantity.replace("_", " "), words(text)))
-    return Table(
-        "Numerical parameter with the largest share of U, with the number of cases.",
-        ["method", "quantity", "dominating parameter"],
-        found,
     )
 
 
@@ -182,7 +161,7 @@ def section(material: Material) -> Section | None:
         Part(stated("code"), [_design_table(evidence.orders)], title="2. Code verification"),
         Part(
             stated("solution", found=_bracketed(contacts)),
-            [coverage_table(contacts), _parameter_table(contacts)],
+            [coverage_table(contacts)],
             title="3. Solution verification",
         ),
         Part(

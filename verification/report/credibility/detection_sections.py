@@ -14,7 +14,6 @@ from verification.credibility.faults.first_notice import (
 )
 from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record
 from verification.evidence.fault_record import Row as Fault
-from verification.page.html_page import render_sections
 from verification.page.number_text import plain, scientific, seconds
 from verification.page.page_parts import Cell, Part, Section, Table, Value, row, table_of, words
 from verification.page.source_labels import source_label
@@ -98,25 +97,6 @@ def faults_section(record: Record) -> Section:
         f"Fails without any fault, so that it is no evidence: {check}" for check in record.failing_clean
     ]
     return Section("faults", "Planted faults", parts, failures)
-
-
-def faults_page(record: Record) -> str:
-    """The section as a page of its own."""
-    facts = (
-        ("started", record.started.replace("T", " ").replace("+00:00", " UTC")),
-        ("duration", seconds(record.seconds)),
-        ("on one core", seconds(record.core_seconds)),
-        ("commit", record.commit or "not in a repository"),
-        ("machine", record.machine),
-        *record.versions.items(),
-    )
-    return render_sections(
-        "coatcheck faults",
-        faults_message(record),
-        facts,
-        [faults_section(record)],
-        "Written by coatcheck faults.",
-    )
 
 
 def _only_coated(row: Fault) -> bool:

@@ -7,7 +7,7 @@ from functools import lru_cache, partial
 import numpy as np
 
 from verification.judging.verdict import Claim
-from verification.page.number_text import factor, plain, scientific
+from verification.page.number_text import plain, scientific
 from verification.page.page_parts import Cell, Part, Section, Table, number, row, tally, words
 from verification.page.source_labels import source_label, symbol_of
 from verification.problem.line_profile import ON_BALL, Profile
@@ -172,7 +172,7 @@ def coverage_table(results: Sequence[CaseResult]) -> Table:
                     Cell(f"{100 * share:.1f} %", share, css),
                     number(1 / worst.ratio, partial(plain, digits=2)) if worst.ratio else "not stated",
                     words(f"{symbol_of(worst.quantity)} on {worst.line}, {case.title}"),
-                    number(float(np.median(ratios)) if ratios else None, partial(factor, better=1.0)),
+                    number(float(np.median(ratios)) if ratios else None, partial(plain, digits=3)),
                     number(max(item.error for _, item in found)),
                 )
             )

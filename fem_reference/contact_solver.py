@@ -2,7 +2,7 @@
 
 Inside, every problem has one length, one pressure and the modulus of the flat's substrate as units
 (``scaling``). For the sphere they are a_h = (3 W R / 4 E*)^(1/3) of the bare substrates and E a_h/R, as
-required by ``contact``. Sliding friction is solved last, on the final mesh and its companion (``levels``).
+``fixed_radius`` requires. Sliding friction is solved last, on the final mesh and its companion (``levels``).
 """
 
 import time
@@ -12,14 +12,14 @@ from itertools import pairwise
 import numpy as np
 
 from .axisymmetric import Discretisation
-from .contact import complementarity
 from .estimate import Estimates, contact_estimates, estimates
+from .fixed_radius import complementarity
 from .levels import NotConverged, companion_grading, final_grading, meshes_at, solve_levels
 from .loading import solve_traction
 from .mesh import Grading
 from .recovery import HarmonicField
 from .scaling import Coatings, LayeredSolid, Units
-from .solution import Diagnostics, Solution
+from .solved_contact import Diagnostics, Solution
 from .state import ElasticState
 from .validation import (
     check_ball,
