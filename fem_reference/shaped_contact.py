@@ -230,7 +230,8 @@ def solve_shape(
                 "the start is too far from it, or its contact is not star-shaped"
             )
         p = found.pressure
-        fields = OffAxisFields.of(compliance, found.loads, friction, p, p.edges, coarser * surface)
+        loads = found.loads(compliance)
+        fields = OffAxisFields.of(compliance, loads, friction, p, p.edges, coarser * surface)
         beyond = np.zeros(5)
         if coarser > 1:
             fewer = corrected(
@@ -240,14 +241,14 @@ def solve_shape(
         return fields, found, beyond
 
     fine, found, _ = on_mesh(1.0, scaled)
-    numbers = _numbers(found)
+    numbers, residual = _numbers(found), found.residual(fine.compliance, fine.loads, scaled_height)
     coarse, uncertainty, extents = None, None, None
     if estimate_uncertainty:
         coarse, companion, beyond = on_mesh(COARSER, found.pressure)
         change = SAFETY * np.abs(numbers - _numbers(companion))
         stiff = STIFF * (size / QUALITIES["default"][0]) ** 4
         change[1:3] = np.maximum(change[1:3], np.array([stiff, WAVES]) * numbers[1:3])
-        left = found.residual * np.abs(numbers)
+        left = residual * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
         parts = (("element size", change), ("harmonics", beyond), ("gap left", left))
@@ -274,7 +275,7 @@ def solve_shape(
             harmonics=harmonics,
             dofs=3 * d.N,
             triangles=int(d.mesh.layer.size),
-            residual_gap=found.residual,
+            residual_gap=residual,
             residual_load=abs(fine.load * unit.load / load - 1),
             seconds=time.perf_counter() - began,
         ),

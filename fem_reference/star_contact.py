@@ -239,17 +239,30 @@ class Quadrature:
 
 @dataclass(frozen=True, eq=False)
 class Corrected:
-    """A pressure with its ``loads`` (harmonics, nodes) and its approach.
-
-    residual : root mean square of the gap left inside, weighted with the pressure, over the approach
-    """
+    """A pressure under which the gap vanishes, with its approach."""
 
     pressure: StarPressure
-    loads: np.ndarray
     approach: float
-    residual: float
     steps: int
     converged: bool
+
+    def loads(self, compliance: HarmonicCompliance) -> np.ndarray:
+        """Products of the pressure with the shape functions, (harmonics, nodes)."""
+        at, forces = self._forces(compliance)
+        each = forces.reshape(1, *at.theta.shape)
+        return compliance.nodal_loads(at.r, at.theta, each, compliance.last)[..., 0]
+
+    def residual(self, compliance: HarmonicCompliance, loads: np.ndarray, height: Pressure) -> float:
+        """Root mean square of the gap left inside, weighted with the pressure, over the approach."""
+        at, forces = self._forces(compliance)
+        deflection = compliance.deflection(loads, at.r, at.theta).ravel()
+        gap = deflection + height(at.x, at.y) - self.approach
+        return float(np.sqrt((forces * gap**2).sum() / forces.sum()) / self.approach)
+
+    def _forces(self, compliance: HarmonicCompliance) -> tuple[Quadrature, np.ndarray]:
+        vertices = compliance.nodes[:: compliance.discretisation.order]
+        at = self.pressure.quadrature(vertices, compliance.last)
+        return at, at.weights * self.pressure(at.x, at.y)
 
 
 def corrected(
@@ -261,8 +274,7 @@ def corrected(
 ) -> Corrected:
     """Pressure under which the gap below an indenter of ``height`` (x, y) vanishes; scaled units.
 
-    last : harmonic at which the compliance is cut off for the corrections, which are smooth; not for the
-    loads and the gap that are found
+    last : harmonic at which the compliance is cut off, since the corrections are smooth
     """
     vertices = compliance.nodes[:: compliance.discretisation.order]
     matrices = compliance.matrices[: last // compliance.fold + 1]
@@ -297,10 +309,4 @@ def corrected(
             coefficients=pressure.coefficients + share * x[:n],
             edge=pressure.edge + share * x[n:-1],
         )
-    at = pressure.quadrature(vertices, compliance.last)
-    forces = at.weights * pressure(at.x, at.y)
-    of_all = compliance.nodal_loads(at.r, at.theta, forces.reshape(1, *at.theta.shape), compliance.last)
-    loads = of_all[..., 0]
-    gap = compliance.deflection(loads, at.r, at.theta).ravel() + height(at.x, at.y) - x[-1]
-    residual = float(np.sqrt((forces * gap**2).sum() / forces.sum()) / x[-1])
-    return Corrected(pressure, loads, float(x[-1]), residual, step, size < CLOSE)
+    return Corrected(pressure, float(x[-1]), step, size < CLOSE)

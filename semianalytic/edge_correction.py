@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from semianalytic import edge_shape, influence, smooth_edge
 from semianalytic.edge_shape import Shape, Step
 from semianalytic.level import Level, LevelProblem
-from semianalytic.smooth_edge import EdgePatches
 
 Array = NDArray[np.floating]
 
@@ -105,17 +104,12 @@ def _rounds(problem: LevelProblem, shape: Shape, p: Array | None) -> Level | Non
     edge = replace(edge, parts=edge.parts.mean(axis=1, keepdims=True))  # all that is needed from now on
     if not edge.misfit < MISFIT or min(shape.axes) < NARROW * grid.d:
         return None
-    either = problem.indenter.round or shape.outside
-    if not either and _missed_inside(shape, edge, p, x, y) > INNER * p.max():
-        return None
+    if not (problem.indenter.round or shape.outside):
+        missed = np.where(p > 0, np.abs(p - shape.pressure(x, y)), 0.0)
+        missed[edge.i, edge.j] = 0.0
+        if missed.max() > INNER * p.max():
+            return None
     return replace(level, shape=shape, edge=edge, convolutions=convolutions)
-
-
-def _missed_inside(shape: Shape, edge: EdgePatches, p: Array, x: Array, y: Array) -> float:
-    """Largest pressure [Pa] by which the patches away from the edge miss f."""
-    rest = np.where(p > 0, p - shape.pressure(x, y), 0.0)
-    rest[edge.i, edge.j] = 0.0
-    return float(np.abs(rest).max())
 
 
 def _start(problem: LevelProblem, p: Array) -> Shape | None:

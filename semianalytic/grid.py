@@ -165,11 +165,10 @@ def prolong(pressure: Array, gap: Array, source: Grid, target: Grid, window: Win
     squares = pressure[rim] ** 2
     K2 = float(np.mean(squares) if weight is None else np.average(squares, weights=weight[rim]))
     K2 /= 0.6 * source.d
-    level: Array = np.asarray(pressure, dtype=np.float64) ** 2
+    level = pressure**2
     # patches not next to a loaded one are never interpolated with one: any value that is not positive serves
     beside &= ~loaded
-    outside = np.asarray(gap[beside], dtype=np.float64)
-    level[beside] = -K2 * (np.maximum(outside, 0.0) * (0.75 * E_star) / K2**0.5) ** (2 / 3)
+    level[beside] = -K2 * (np.maximum(gap[beside], 0.0) * (0.75 * E_star) / K2**0.5) ** (2 / 3)
     rows, columns = window.slices
     level = _linear(_linear(level, source, target.x[rows]).T, source, target.x[columns])
     return np.sqrt(np.maximum(level, 0.0)).T

@@ -18,7 +18,7 @@ class Numerics:
     """Numerical parameters; the uncertainty covers those that change a result.
 
     patches : per side of the finest grid.  tolerance : gap and penetration over the approach.
-    conversion : "split", with ``hankel_points``, or "plain".
+    conversion : "split", with ``hankel_points``, or "plain".  accuracy : for which patches are refined.
     """
 
     patches: int = 257
@@ -26,6 +26,7 @@ class Numerics:
     max_iterations: int = 600
     conversion: str = "split"
     threads: int = 1
+    accuracy: float | None = None
     hankel_points: int = 4096
 
     def __post_init__(self) -> None:

@@ -143,7 +143,7 @@ class Level:
         return None if self.shape is None else rings_of(self.shape, coarser)
 
     def matching(self, first: "Level", x: Array, y: Array) -> tuple[Array, Array]:
-        """Points [m] at the distances from a smooth edge that x and y have from that of the ``first`` level."""
+        """Points [m] as far from this smooth edge as x and y [m] are from that of the ``first`` level."""
         if self.shape is None or first.shape is None:
             return x, y
         return self.shape.matching(first.shape, x, y)

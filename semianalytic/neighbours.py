@@ -1,6 +1,5 @@
 """Stiffness of a round contact, from contacts at neighbouring loads."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -9,7 +8,6 @@ from numpy.typing import NDArray
 
 from semianalytic import nested
 from semianalytic.contact import NotConverged
-from semianalytic.grid import Grid
 from semianalytic.inputs import Body, Numerics, undeformed_gap
 from semianalytic.level import Indenter, Level
 
@@ -29,12 +27,8 @@ class Sphere:
     gap: str
 
     def indenter(self, load: float | None, approach: float | None, edge_correction: bool) -> Indenter:
-        undeformed: Callable[[Array], Array] = undeformed_gap(self.gap, self.radius)
-
-        def gap(grid: Grid) -> Array:
-            return undeformed(grid.radius)
-
-        return Indenter(gap, load, approach, round=True, edge_correction=edge_correction)
+        undeformed = undeformed_gap(self.gap, self.radius)
+        return Indenter(lambda grid: undeformed(grid.radius), load, approach, True, edge_correction)
 
 
 @dataclass(frozen=True, eq=False)

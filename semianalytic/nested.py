@@ -42,8 +42,6 @@ def levels(
         used, pressed = (numerics, indenter) if k >= len(sizes) - kept else (starter, rough)
         before, grid = found[-1] if found else None, Grid(n, 2 * half_width / n, indenter.round)
         found.append(solve_on(grid, before, pressed, body, used))
-        if k < len(sizes) - kept:
-            found[-1] = _of_single_precision(found[-1])
         if not estimate_uncertainty:
             del found[:-1]
     return found
@@ -99,13 +97,6 @@ def lowest_point(grid: Grid, gap: Array, indenter: Indenter) -> float:
         i, j = divmod(int(z.argmin()), 3)
         x, y, lowest = float(beside[0][i]), float(beside[1][j]), min(lowest, float(z[i, j]))
     return lowest
-
-
-def _of_single_precision(level: Level) -> Level:
-    """The same as a first guess, in half the memory."""
-    found = level.found
-    pressure, gap = (np.asarray(values, dtype=np.float32) for values in (found.pressure, found.gap))
-    return replace(level, found=replace(found, pressure=pressure, gap=gap))
 
 
 def _solved(problem: LevelProblem) -> Level:

@@ -91,7 +91,7 @@ def solve(
     check_control(load, approach)
     check_positive(radius=radius)
     body = _body(coatings, substrate, friction, ball)
-    numerics = Numerics(patches, tolerance, max_iterations, conversion, threads)
+    numerics = Numerics(patches, tolerance, max_iterations, conversion, threads, accuracy)
     check_truth_value(edge_correction=edge_correction)
     if edge_correction:
         check_odd(patches)
@@ -99,16 +99,11 @@ def solve(
         pressed = _of_profile(profile_of(indenter, radius), load, approach, edge_correction)
         half_width = FILL * WIDER_SHAPE * hertz_radius(radius, load, approach, body)
         numerics = replace(numerics, tolerance=max(tolerance, 1e-8))
-        return _shaped(pressed, half_width, body, numerics, accuracy, estimate_uncertainty)
+        return _shaped(pressed, half_width, body, numerics, estimate_uncertainty)
     sphere = Sphere(radius, gap)
     pressed = sphere.indenter(load, approach, edge_correction)
     half_width = FILL * _contact_radius(radius, pressed, body, numerics)
-    levels = nested.levels(half_width, pressed, body, numerics, estimate_uncertainty)
-    if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
-        raise NotConverged(f"the contact reaches the rim of the grid at {half_width:g} m; check the moduli")
-    estimate = None
-    if estimate_uncertainty:
-        estimate = _refined(levels, accuracy, (LARGEST_GRID, LARGE_GRID), pressed, body, numerics)
+    levels, estimate = _refined(pressed, half_width, body, numerics, estimate_uncertainty)
     solution = Solution.of_levels(levels[-3:], body, estimate, began)
     if levels[-1].shape is None:
         return solution
@@ -119,24 +114,29 @@ def solve(
 
 
 def _refined(
-    levels: list[Level],
-    accuracy: float | None,
-    largest: tuple[int, int],
-    indenter: Indenter,
-    body: Body,
-    numerics: Numerics,
-) -> Uncertainty:
-    """Uncertainty of the last of the ``levels``, to which finer ones are added until it meets ``accuracy``.
-
-    largest : patches a side at most, and where refining no longer lessens the uncertainty
-    """
+    indenter: Indenter, half_width: float, body: Body, numerics: Numerics, estimate_uncertainty: bool
+) -> tuple[list[Level], Uncertainty | None]:
+    """Levels of a refinement study, further ones until the uncertainty meets the accuracy, and that of the
+    last."""
+    levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)
+    if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
+        raise NotConverged(
+            f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it, or check "
+            "the moduli"
+        )
+    if not estimate_uncertainty:
+        return levels, None
     estimate = uncertainty.of_contact(levels, indenter, body, numerics)
+    # patches alone under another shape than a sphere converge too slowly for it
+    smooth = indenter.edge_correction and (indenter.round or levels[-1].shape is not None)
+    accuracy = numerics.accuracy if smooth else None
     reached: list[float] = []
-    while accuracy and indenter.edge_correction and not uncertainty.is_met(accuracy, estimate, levels):
+    while accuracy and not uncertainty.is_met(accuracy, estimate, levels):
         last = levels[-1].grid
         n = odd(FINER * last.n)
         reached.append(estimate.relative_to(levels[-1].scalars, uncertainty.MOVING))
-        if n > largest[uncertainty.is_stalled(accuracy, reached)]:
+        largest = LARGE_GRID if uncertainty.is_stalled(accuracy, reached) else LARGEST_GRID
+        if n > (largest if indenter.round else BESIDE):
             break
         grid = replace(last, n=n, d=2 * last.half_width / n)
         try:
@@ -144,29 +144,24 @@ def _refined(
         except NotConverged:  # the last solution states what it reached
             break
         estimate = uncertainty.of_contact(levels, indenter, body, numerics)
-    return estimate
+    return levels, estimate
 
 
 def _shaped(
-    indenter: Indenter,
-    half_width: float,
-    body: Body,
-    numerics: Numerics,
-    accuracy: float | None,
-    estimate_uncertainty: bool,
+    indenter: Indenter, half_width: float, body: Body, numerics: Numerics, estimate_uncertainty: bool
 ) -> Solution:
     """Press an indenter over a square ``FILL`` times as wide as its contact, which coarse grids find."""
     rough, coarse = replace(indenter, edge_correction=False), replace(numerics, patches=ROUGH, tolerance=1e-4)
     for _ in range(20):
         try:
-            found = _pressed(rough, half_width, body, coarse, None, estimate_uncertainty=False)
+            found = _pressed(rough, half_width, body, coarse, estimate_uncertainty=False)
         except NotConverged:
             half_width *= 1.5
             continue
         loaded = np.argwhere(found.patch_pressure > 0)
         extent = float(np.abs(found.nodes[loaded]).max()) + found.diagnostics.patch_size
         if extent > half_width / 3:
-            return _pressed(indenter, FILL * extent, body, numerics, accuracy, estimate_uncertainty)
+            return _pressed(indenter, FILL * extent, body, numerics, estimate_uncertainty)
         half_width = ROOMY * extent
     raise NotConverged(f"no contact within {half_width:g} m carries the load; check the indenter")
 
@@ -236,7 +231,7 @@ def indent(
     body = _body(coatings, substrate, friction, ball)
     numerics = Numerics(patches, tolerance, max_iterations, conversion, threads)
     indenter = _of_profile(profile, load, approach, edge_correction)
-    return _pressed(indenter, half_width, body, numerics, None, estimate_uncertainty)
+    return _pressed(indenter, half_width, body, numerics, estimate_uncertainty)
 
 
 def _of_profile(
@@ -258,24 +253,10 @@ def _of_profile(
 
 
 def _pressed(
-    indenter: Indenter,
-    half_width: float,
-    body: Body,
-    numerics: Numerics,
-    accuracy: float | None,
-    estimate_uncertainty: bool,
+    indenter: Indenter, half_width: float, body: Body, numerics: Numerics, estimate_uncertainty: bool
 ) -> Solution:
     began = time.perf_counter()
-    levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)
-    if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
-        raise NotConverged(
-            f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it"
-        )
-    estimate = None
-    if estimate_uncertainty:
-        # patches alone converge too slowly for it
-        accuracy = accuracy if levels[-1].shape else None
-        estimate = _refined(levels, accuracy, (BESIDE, BESIDE), indenter, body, numerics)
+    levels, estimate = _refined(indenter, half_width, body, numerics, estimate_uncertainty)
     return Solution.of_levels(levels[-3:], body, estimate, began)
 
 
@@ -316,7 +297,7 @@ def solve_prescribed(
     levels = [level(n, 1, numerics) for n in sizes]
     fine, half, quarter = (one.scalars for one in levels[::-1])
     variations = {
-        name: uncertainty.change(half, varied.scalars)
+        name: {scalar: abs(varied.scalars[scalar] - value) for scalar, value in half.items()}
         for name, varied in (
             ("conversion", level(sizes[1], 1, uncertainty.other_conversion(numerics))),
             ("domain", level(sizes[1], WIDER, numerics)),

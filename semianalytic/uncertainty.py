@@ -97,11 +97,6 @@ class Uncertainty:
         )
 
 
-def change(one: dict[str, float], other: dict[str, float]) -> dict[str, float]:
-    """Absolute changes of scalars."""
-    return {name: abs(other[name] - value) for name, value in one.items()}
-
-
 def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Numerics) -> Uncertainty:
     """Refinement study of the last three levels; conversion and domain on the coarsest, iteration on the
     finest."""
