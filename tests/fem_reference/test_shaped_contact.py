@@ -45,14 +45,14 @@ def test_a_wrong_start_is_corrected_to_the_contact_of_hertz():
 def test_the_stress_at_the_end_of_an_axis_is_johnsons(radii):
     """K. L. Johnson, Contact Mechanics, 1985, section 4.2: sigma_x = -sigma_y there."""
     exact, (_, nu) = pressed_ellipsoid(*radii, LOAD, *STEEL), STEEL
-    found = solved(exact.pressure, indenter=("ellipsoid", radii), harmonics=480, surface=0.06)
+    found = solved(exact.pressure, indenter=("ellipsoid", radii), harmonics=None, surface=0.06)
     b, a = sorted(exact.axes)
     e = np.sqrt(1 - (b / a) ** 2)
     radial = (1 - 2 * nu) * exact.peak_pressure * b / (a * e * e)
     radial *= np.arctanh(e) / e - 1 if exact.axes[0] == a else 1 - b / (a * e) * np.arctan(e * a / b)
     stress = found.stress(found.extent_x, 0.0, 0.0) / exact.peak_pressure
-    assert stress[0, 0] == pytest.approx(radial / exact.peak_pressure, abs=5e-4)
-    assert stress[1, 1] == pytest.approx(-radial / exact.peak_pressure, abs=5e-4)
+    assert stress[0, 0] == pytest.approx(radial / exact.peak_pressure, abs=3e-4)
+    assert stress[1, 1] == pytest.approx(-radial / exact.peak_pressure, abs=3e-4)
 
 
 def test_a_start_turned_by_a_right_angle_is_not_taken_for_the_contact():
