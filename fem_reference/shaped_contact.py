@@ -230,7 +230,7 @@ def solve_shape(
                 "the start is too far from it, or its contact is not star-shaped"
             )
         p = found.pressure
-        loads = found.loads(compliance)
+        loads = found.nodal_loads(compliance)
         fields = OffAxisFields.of(compliance, loads, friction, p, p.edges, coarser * surface)
         beyond = np.zeros(5)
         if coarser > 1:

@@ -246,7 +246,7 @@ class Corrected:
     steps: int
     converged: bool
 
-    def loads(self, compliance: HarmonicCompliance) -> np.ndarray:
+    def nodal_loads(self, compliance: HarmonicCompliance) -> np.ndarray:
         """Products of the pressure with the shape functions, (harmonics, nodes)."""
         at, forces = self._forces(compliance)
         each = forces.reshape(1, *at.theta.shape)
