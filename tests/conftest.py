@@ -2,6 +2,7 @@
 
 import os
 import re
+import time
 import zlib
 
 import pytest
@@ -33,6 +34,17 @@ def pytest_addoption(parser):
     parser.addoption(
         "--slow-part", type=int, choices=range(SLOW_PARTS), help="one part of the slow tests alone"
     )
+    parser.addoption("--slow-seconds", type=float, help="begin no slow test later than this")
+
+
+BEGIN = time.monotonic()
+
+
+def pytest_runtest_setup(item):
+    seconds = item.config.getoption("--slow-seconds")
+    late = seconds is not None and time.monotonic() - BEGIN > seconds
+    if late and item.get_closest_marker("slow"):
+        pytest.skip(f"{seconds:g} s are over")
 
 
 def pytest_collection_modifyitems(config, items):
