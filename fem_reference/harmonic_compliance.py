@@ -40,8 +40,8 @@ DENSITY = 3.1
 class HarmonicCompliance:
     """Response to the pressures that act on the unknowns ``loaded`` of one field on the surface of one mesh.
 
-    solved : m of each solution.  fields : field vectors by unit loads of it, (field vector, nodes).
-    meridians : of the same m, factorised.  last, fold : harmonics 0, fold, 2 fold, .., last
+    solved : m of each solution.  fields : by unit loads of it, on the sides of triangles (field vector,
+    nodes).   meridians : of the same m, factorised.  last, fold : harmonics 0, fold, 2 fold, .., last
     """
 
     solid: LayeredSolid
@@ -96,7 +96,11 @@ class HarmonicCompliance:
     def displacements(self, loads: np.ndarray) -> dict[int, np.ndarray]:
         """Field vector of every harmonic under a pressure of ``loads`` (harmonics, nodes)."""
         pressed = {int(m): L for m, L in zip(self.harmonics, loads, strict=True) if L.any()}
-        return _superposed(self.solved, pressed, lambda k, columns: self.fields[k] @ columns)
+
+        def respond(k: int, columns: np.ndarray) -> np.ndarray:
+            return self.meridians[k].skeleton.extended(self.fields[k] @ columns)
+
+        return _superposed(self.solved, pressed, respond)
 
     def sliding(self, loads: np.ndarray, friction: float) -> dict[int, np.ndarray]:
         """The same under the traction ``friction`` times the pressure along x."""
@@ -113,7 +117,7 @@ class HarmonicCompliance:
 
         def respond(k: int, columns: np.ndarray) -> np.ndarray:
             one = known.get(solved[k]) or Meridian.of(self.solid, self.discretisation, solved[k])
-            return one.fields(self.loaded, columns)
+            return one.skeleton.extended(one.fields(self.loaded, columns))
 
         return _superposed(solved, pulled, respond)
 
@@ -232,7 +236,7 @@ class Meridian:
     def fields(self, loaded: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Field vectors (n, columns) under ``loads`` (3, nodes, columns): normal, radial, angular products.
 
-        loaded : unknowns of one field at the nodes.
+        On the sides of triangles alone.  loaded : unknowns of one field at the nodes.
 
         Far away the displacement due to the resultant: normal for m = 0, tangential for m = 1.
         """
@@ -248,4 +252,4 @@ class Meridian:
             given = np.zeros((count * d.N, loads.shape[-1]))
             for field, u in enumerate(self.solid.far_fields(int(m), 1.0, far)):
                 given[field * d.N + d.outer] = u[:, None] * resultant
-        return self.skeleton.extended(self.factor.solve(at, np.concatenate(load), given))
+        return self.factor.solve(at, np.concatenate(load), given)

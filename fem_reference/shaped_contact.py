@@ -25,7 +25,7 @@ from .validation import check_choice, check_materials, check_positive, check_pro
 
 MARGIN = 1.04  # of the contact up to the last node below the pressure, and as much before the first
 WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
-QUALITIES = {"fast": (0.5, 0.12, 120), "default": (0.38, 0.06, 240), "fine": (0.4, 0.05, 288)}
+QUALITIES = {"fast": (0.5, 0.12, 120), "default": (0.44, 0.06, 240), "fine": (0.4, 0.05, 288)}
 # Times the number of waves as wide as the contact at its end on y = 0, as deep inside as the triangles there.
 AT_END = 5.0
 STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish

@@ -83,11 +83,11 @@ class Shape:
         for _ in range(20 if self.contour.any() else 0):
             t = self._in_contour(reach * cos, reach * sin)
             reach = reach / np.sqrt(np.maximum(1 - t, 0.25))
-            if np.all(np.abs(t) < 1e-15):
+            if np.all(np.abs(t) < 1e-14):
                 break
         return reach
 
-    def on_ray(self, s: Array, angle: Array) -> tuple[Array, Array]:
+    def on_ray(self, s: Array | float, angle: Array) -> tuple[Array, Array]:
         """x and y [m] at a share s of the way from the centre to the edge."""
         reach, (x0, y0), (A, B) = s * self.reach(angle), self.centre, self.axes
         return x0 + A * reach * np.cos(angle), y0 + B * reach * np.sin(angle)

@@ -175,24 +175,21 @@ class SmoothContour:
 
     def _touching(self, x: Array, y: Array) -> list[list[float]]:
         """Distances at which rings around each point touch the edge: extrema along it, ascending."""
-        (x0, y0), (A, B), h = self.shape.centre, self.shape.axes, 1e-3
+        h = 1e-3
 
         def square(of: NDArray[np.intp], angle: Array) -> Array:
-            reach = self.shape.reach(angle)
-            found: Array = (x0 + A * reach * np.cos(angle) - x[of]) ** 2 + (
-                y0 + B * reach * np.sin(angle) - y[of]
-            ) ** 2
+            X, Y = self.shape.on_ray(1.0, angle)
+            found: Array = (X - x[of]) ** 2 + (Y - y[of]) ** 2
             return found
 
-        point, k = (v.ravel() for v in np.indices((x.size, AROUND)))
-        sampled = square(point, 2 * np.pi * k / AROUND).reshape(x.size, AROUND)
+        sampled = square(np.arange(x.size)[:, None], 2 * np.pi * np.arange(AROUND) / AROUND)
         before, after = np.roll(sampled, 1, axis=1), np.roll(sampled, -1, axis=1)
         extreme = (sampled - before) * (after - sampled) <= 0
         extreme[~extreme.any(axis=1), :1] = True  # the centre of a circle
         point, k = np.nonzero(extreme)
         angle = 2 * np.pi * k / AROUND
         for _ in range(4):
-            low, here, high = (square(point, angle + shift) for shift in (-h, 0.0, h))
+            low, here, high = square(point, angle + h * np.array([[-1], [0], [1]]))
             slope, bend = (high - low) / (2 * h), (high - 2 * here + low) / h**2
             flat = np.abs(bend) < 1e-6 * here
             step = np.where(flat, 0.0, -slope / np.where(flat, 1.0, bend))

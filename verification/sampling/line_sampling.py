@@ -38,7 +38,7 @@ def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> t
 
 # Of a, around the edge of a contact that is no disc: no point there but on ``EDGE_LINE``, along which the
 # meridian mesh is made for the edge.
-CLEAR = 0.3
+CLEAR = 0.1
 BESIDE_SHAPED = np.array([0.0, 0.01, 0.03, 0.08, 0.15, 0.25])  # of a, either side of it on ``EDGE_LINE``
 SHAPED = 21  # points on either side of x = 0, of rings about which there are no tables
 
