@@ -1,6 +1,7 @@
 """False alarms: verdicts other than AGREES on random problems that contain no error.
 
-Both methods and every reference solve each problem.
+Those that find the uncertainty too large to judge are counted apart. Both methods and every reference
+solve each problem.
 """
 
 from dataclasses import dataclass
@@ -65,6 +66,21 @@ class AlarmRecord:
     machine: str
     versions: dict[str, str]
     ratios: tuple[Ratios, ...] = ()
+
+    @property
+    def inconclusive(self) -> tuple[Alarm, ...]:
+        """The verdicts that find U above its cap; all others claim an error where there is none."""
+        return tuple(one for one in self.alarms if one.outcome is Outcome.INCONCLUSIVE)
+
+    @property
+    def tally(self) -> str:
+        """Both numbers in words."""
+        count, vague = len(self.alarms) - len(self.inconclusive), self.inconclusive
+        text = f"{count} false alarms"
+        if vague:
+            problems = len({one.case for one in vague})
+            text += f" and {len(vague)} inconclusive verdicts (U above its cap, in {problems} problems)"
+        return f"{text} in {self.comparisons} comparisons and {self.invariants} invariants"
 
 
 _FILE = RecordFile(AlarmRecord, "alarms.json", READABLE, "false alarms", "measure it again")

@@ -127,9 +127,8 @@ def false_alarms() -> str:
     record = alarm_record.read_record(RECORDS)
     assert record is not None
     text = (
-        f"{_day(record.started)}: {len(record.alarms)} false alarms in {record.comparisons} comparisons and "
-        f"{record.invariants} invariants of {record.problems} random problems (seed {record.seed}), of which "
-        f"{record.agreeing} agree throughout."
+        f"{_day(record.started)}: {record.tally} of {record.problems} random problems (seed "
+        f"{record.seed}), of which {record.agreeing} agree throughout."
     )
     rows = [
         [SOURCES[r.source].label, str(r.values), f"{r.within:.1%}", f"{r.median:.3g}"] for r in record.ratios

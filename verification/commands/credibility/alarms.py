@@ -117,8 +117,7 @@ def _print(found: AlarmRecord, page: Path, stored: Path | None) -> None:
         if (more := len(found.alarms) - MOST_SHOWN) > 0:
             print_out(f"... with {more} more in the report")
     print_out(
-        f"{len(found.alarms)} false alarms in {found.comparisons} comparisons and {found.invariants} "
-        f"invariants of {found.problems} clean problems, seed {found.seed}; "
+        f"{found.tally} of {found.problems} clean problems, seed {found.seed}; "
         f"{found.agreeing} problems agree throughout",
         escape(f"{found.seconds:.0f} s; report: {page}"),
         *([escape(f"recorded: {stored}")] if stored is not None else []),

@@ -256,7 +256,9 @@ def worth(material: Material) -> list[Worth]:
             silent = [row not in faults.alarms for row in faults.controls]
             share("negative controls left alone", silent, "#faults")
     if alarms := evidence.alarms:
-        value = f"{len(alarms.alarms)} of {alarms.comparisons + alarms.invariants}"
+        vague = len(alarms.inconclusive)
+        value = f"{len(alarms.alarms) - vague} of {alarms.comparisons + alarms.invariants}"
+        value += f", {vague} inconclusive" if vague else ""
         recorded("false alarms", value, "#credibility", "alarms", alarms.started, alarms.commit)
     if evidence.maps is not None and evidence.maps.maps:
         count = str(len(evidence.maps.maps))
