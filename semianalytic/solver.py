@@ -135,7 +135,7 @@ def _refined(
         last = levels[-1].grid
         n = odd(FINER * last.n)
         reached.append(estimate.relative_to(levels[-1].scalars, uncertainty.MOVING))
-        largest = LARGE_GRID if uncertainty.is_stalled(accuracy, reached) else LARGEST_GRID
+        largest = LARGE_GRID if uncertainty.is_stalled(accuracy, reached, levels) else LARGEST_GRID
         if n > (largest if indenter.round else BESIDE):
             break
         grid = replace(last, n=n, d=2 * last.half_width / n)

@@ -26,6 +26,7 @@ PRESSURE, EARLIER = 4.0, 1 / 5
 # of 0.1 a on 15 patches needed 5.4 times.
 COARSE = 24.0
 FALL = 3.0  # of the uncertainty on refining twice, that makes a larger grid worth its time
+SUDDEN = 0.1  # of the ripple, or of the change of the pressure, of the grid before
 PATCHES = 1 / 2  # of the change before, of patches alone, whose edge changes erratically
 
 
@@ -129,9 +130,14 @@ def is_met(accuracy: float, estimate: Uncertainty, levels: list[Level]) -> bool:
     return estimate.relative_to(levels[-1].scalars) <= accuracy and change <= PRESSURE * accuracy
 
 
-def is_stalled(accuracy: float, reached: Sequence[float]) -> bool:
-    """Whether the relative uncertainties ``reached``, a grid each, exceed the accuracy and no longer fall."""
-    return reached[-1] > accuracy and FALL * reached[-1] > reached[-3:][0]
+def is_stalled(accuracy: float, reached: Sequence[float], levels: list[Level]) -> bool:
+    """Whether the relative uncertainties ``reached``, a grid each, exceed the accuracy and no longer fall.
+
+    They do where a grid is the first to resolve the pressure at the edge: one more shows it.
+    """
+    resolved = levels[-1].ripple < SUDDEN * levels[-2].ripple
+    settled = _pressure_change(*levels[:-3:-1]) < SUDDEN * _pressure_change(*levels[-2:-4:-1])
+    return reached[-1] > accuracy and FALL * reached[-1] > reached[-3:][0] and not (resolved or settled)
 
 
 def _pressure_change(fine: Level, coarse: Level) -> float:
