@@ -16,6 +16,7 @@ import numpy as np
 
 from .axisymmetric import Discretisation
 from .harmonic_compliance import DENSITY, HarmonicCompliance, harmonic_compliance
+from .line_quadrature import gauss_legendre
 from .location import LocatedPoints, SolidPoints, solid_points
 from .mesh import Grading, MeridianMesh, meridian_mesh, surface_size
 from .recovery import HarmonicField, stress_of
@@ -137,11 +138,9 @@ class AngularPressure:
 
     def nodal_loads(self, compliance: HarmonicCompliance) -> np.ndarray:
         """Its products with the shape functions, (harmonics, nodes)."""
-        node, weight = np.polynomial.legendre.leggauss(RADIAL)
         vertices = compliance.nodes[:: compliance.discretisation.order]
-        half = np.diff(vertices)[:, None] / 2
-        r = (vertices[:-1, None] + half * (1 + node)).ravel()
-        p = self.harmonics(r, compliance.last)[compliance.harmonics] * (half * weight).ravel() * r
+        r, weight = gauss_legendre(RADIAL, vertices[:-1], vertices[1:])
+        p = self.harmonics(r, compliance.last)[compliance.harmonics] * weight * r
         found = np.pi * compliance.products(r, p)
         found[0] *= 2
         largest = np.abs(found).max()

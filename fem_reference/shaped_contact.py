@@ -201,12 +201,13 @@ def solve_shape(
         widest += indenter[1][0]
     pressure = StarPressure.of(start, fold, widest)
     # six digits, lest the mesh follow the rounding of the pressure given
-    reach = float(f"{MARGIN * pressure.reach[1]:.6g}")
+    nearest, farthest = pressure.reach
+    reach = float(f"{MARGIN * farthest:.6g}")
     unit = Units(length=reach, pressure=E, modulus=E)
     solid = LayeredSolid.scaled(coatings, substrate, reach, far, E)
     check_proportions(solid.thicknesses, "the contact's extent")
     scaled = pressure.scaled(reach, E)
-    inner = max(0.0, scaled.reach[0] - (MARGIN - 1))
+    inner = max(0.0, nearest / reach - (MARGIN - 1))
 
     if harmonics is None:
         waves = np.pi / scaled.end_angle(float(surface_size(surface, 0.0)))
@@ -230,8 +231,7 @@ def solve_shape(
                 "the start is too far from it, or its contact is not star-shaped"
             )
         p = found.pressure
-        loads = found.nodal_loads(compliance)
-        fields = OffAxisFields.of(compliance, loads, friction, p, p.edges, coarser * surface)
+        fields = OffAxisFields.of(compliance, found.nodal_loads, friction, p, p.edges, coarser * surface)
         beyond = np.zeros(5)
         if coarser > 1:
             fewer = corrected(
@@ -241,7 +241,7 @@ def solve_shape(
         return fields, found, beyond
 
     fine, found, _ = on_mesh(1.0, scaled)
-    numbers, residual = _numbers(found), found.residual(fine.compliance, fine.loads, scaled_height)
+    numbers, residual = _numbers(found), found.residual(scaled_height)
     coarse, uncertainty, extents = None, None, None
     if estimate_uncertainty:
         coarse, companion, beyond = on_mesh(COARSER, found.pressure)

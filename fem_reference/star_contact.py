@@ -16,11 +16,13 @@ that functions of this degree do not reach.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from .harmonic_compliance import HarmonicCompliance
+from .line_quadrature import gauss_legendre
 
 Pressure = Callable[[Any, Any], Any]
 
@@ -116,14 +118,13 @@ class StarPressure:
         added = np.tensordot(self.coefficients, self.polynomials(np.minimum(s, 1.0), tau, DEGREE), 1)
         return np.where(s < 1, np.maximum(p + np.sqrt(np.maximum(1 - s**2, 0)) * added, 0), 0)
 
-    def quadrature(self, vertices: np.ndarray, last: int) -> "Quadrature":
-        """Points on half circles about the origin between the ``vertices``, for harmonics to ``last``.
+    def quadrature(self, compliance: HarmonicCompliance, last: int) -> "Quadrature":
+        """Points on half circles about the origin between the vertices, for harmonics to ``last``.
 
         By Gauss-Legendre on the arcs inside the contact, towards whose ends p falls like a square root.
         """
-        node, weight = np.polynomial.legendre.leggauss(RADIAL)
-        half = np.diff(vertices)[:, None] / 2
-        r, of_r = ((vertices[:-1, None] + half * (1 + node)).ravel(), (half * weight).ravel())
+        vertices = compliance.nodes[:: compliance.discretisation.order]
+        r, of_r = gauss_legendre(RADIAL, vertices[:-1], vertices[1:])
         theta = np.pi * np.arange(SAMPLES + 1) / SAMPLES
         inside = self._inside(r[:, None], theta) > 0
         ring, place = np.nonzero(inside[:, 1:] != inside[:, :-1])
@@ -136,9 +137,9 @@ class StarPressure:
         ends = np.concatenate([low, np.zeros(inside[:, 0].sum()), np.full(inside[:, -1].sum(), np.pi)])
         order = np.lexsort((ends, rings))
         arc, (begin, end) = rings[order][::2], ends[order].reshape(-1, 2).T
-        node, weight = np.polynomial.legendre.leggauss(int(ANGULAR[0] + ANGULAR[1] * last))
-        angle = (begin + end)[:, None] / 2 + (end - begin)[:, None] / 2 * np.sin(np.pi / 2 * node)
-        of_angle = (end - begin)[:, None] * np.pi / 4 * np.cos(np.pi / 2 * node) * weight
+        t, weight = gauss_legendre(int(ANGULAR[0] + ANGULAR[1] * last), -np.pi / 2, np.pi / 2)
+        angle = (begin + end)[:, None] / 2 + (end - begin)[:, None] / 2 * np.sin(t)
+        of_angle = (end - begin)[:, None] / 2 * np.cos(t) * weight
         x, y = r[arc, None] * np.cos(angle), r[arc, None] * np.sin(angle)
         weights = 2 * (of_r * r)[arc, None] * of_angle
         x, y, weights = x.ravel(), y.ravel(), weights.ravel()
@@ -239,29 +240,31 @@ class Quadrature:
 
 @dataclass(frozen=True, eq=False)
 class Corrected:
-    """A pressure under which the gap vanishes, with its approach."""
+    """A pressure under which the gap vanishes, with its approach, and the compliance it was found with."""
 
+    compliance: HarmonicCompliance
     pressure: StarPressure
     approach: float
     steps: int
     converged: bool
 
-    def nodal_loads(self, compliance: HarmonicCompliance) -> np.ndarray:
+    @cached_property
+    def nodal_loads(self) -> np.ndarray:
         """Products of the pressure with the shape functions, (harmonics, nodes)."""
-        at, forces = self._forces(compliance)
+        at, forces = self._forces
         each = forces.reshape(1, *at.theta.shape)
-        return compliance.nodal_loads(at.r, at.theta, each, compliance.last)[..., 0]
+        return self.compliance.nodal_loads(at.r, at.theta, each, self.compliance.last)[..., 0]
 
-    def residual(self, compliance: HarmonicCompliance, loads: np.ndarray, height: Pressure) -> float:
+    def residual(self, height: Pressure) -> float:
         """Root mean square of the gap left inside, weighted with the pressure, over the approach."""
-        at, forces = self._forces(compliance)
-        deflection = compliance.deflection(loads, at.r, at.theta).ravel()
+        at, forces = self._forces
+        deflection = self.compliance.deflection(self.nodal_loads, at.r, at.theta).ravel()
         gap = deflection + height(at.x, at.y) - self.approach
         return float(np.sqrt((forces * gap**2).sum() / forces.sum()) / self.approach)
 
-    def _forces(self, compliance: HarmonicCompliance) -> tuple[Quadrature, np.ndarray]:
-        vertices = compliance.nodes[:: compliance.discretisation.order]
-        at = self.pressure.quadrature(vertices, compliance.last)
+    @cached_property
+    def _forces(self) -> tuple[Quadrature, np.ndarray]:
+        at = self.pressure.quadrature(self.compliance, self.compliance.last)
         return at, at.weights * self.pressure(at.x, at.y)
 
 
@@ -276,11 +279,10 @@ def corrected(
 
     last : harmonic at which the compliance is cut off, since the corrections are smooth
     """
-    vertices = compliance.nodes[:: compliance.discretisation.order]
     matrices = compliance.matrices[: last // compliance.fold + 1]
     pressure = given
     for step in range(STEPS + 1):
-        at = pressure.quadrature(vertices, last)
+        at = pressure.quadrature(compliance, last)
         p = pressure(at.x, at.y)
         root = np.sqrt(1 - at.s**2)
         smooth = root * pressure.polynomials(at.s, at.tau, DEGREE)
@@ -309,4 +311,4 @@ def corrected(
             coefficients=pressure.coefficients + share * x[:n],
             edge=pressure.edge + share * x[n:-1],
         )
-    return Corrected(pressure, float(x[-1]), step, size < CLOSE)
+    return Corrected(compliance, pressure, float(x[-1]), step, size < CLOSE)

@@ -6,6 +6,8 @@ from functools import partial
 
 import numpy as np
 
+from .line_quadrature import gauss_legendre
+
 MAX_COATINGS = 50
 MAX_CONTRAST = 1e4
 MIN_THICKNESS = 1e-4
@@ -121,8 +123,7 @@ def prescribed_pressure(
         check_positive(pressure=pressure)
         pressure = partial(np.full_like, fill_value=pressure)
     # Gauss points avoid r = 0 and r = load_radius, where a callable may be singular
-    s, weight = np.polynomial.legendre.leggauss(40)
-    r = load_radius * (s + 1) / 2
+    r, weight = gauss_legendre(40, 0.0, load_radius)
     try:
         values = np.asarray(pressure(r), dtype=float)
     except (TypeError, ValueError) as error:

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from semianalytic import halfspace
 from semianalytic.inputs import Body, Numerics
 from semianalytic.response import Response
+from semianalytic.ring_quadrature import gauss_legendre
 
 Array = NDArray[np.floating]
 Function = Callable[[Array], Array]
@@ -89,8 +90,8 @@ def _corner(g: Function, on_disc: Function, n: int, d: float, near: float) -> Ar
         _gauss_block(mean, g, d, inner, outer, reach)
         inner = outer
     # the loaded patch, which may be far wider than the coating is thick, in polar coordinates
-    s, w = np.polynomial.legendre.leggauss(16)
-    mean[0, 0] = np.pi * np.sum(w * on_disc(d / 2 / np.cos(np.pi / 8 * (1 + s))))
+    angle, w = gauss_legendre(16, 0.0, np.pi / 4)
+    mean[0, 0] = 8 * np.sum(w * on_disc(d / 2 / np.cos(angle)))
     return mean
 
 
@@ -159,11 +160,11 @@ def _gauss_block(mean: Array, g: Function, d: float, inner: int, outer: int, rea
     """
     t = 2 * max(reach, 0.05)
     order = int(np.ceil(-np.log(DIGITS) / (2 * np.log(t + np.hypot(t, 1)))))
-    s, w = np.polynomial.legendre.leggauss(max(order, 3))
+    s, w = gauss_legendre(max(order, 3), -0.5, 0.5)
     i, j = np.tril_indices(outer)
     ring = i >= inner
     i, j = i[ring], j[ring]
-    X = (i[:, None] + s / 2)[:, :, None]
-    Y = (j[:, None] + s / 2)[:, None, :]
-    value = np.einsum("pij,i,j->p", g(d * np.hypot(X, Y)), w, w) * d * d / 4
+    X = (i[:, None] + s)[:, :, None]
+    Y = (j[:, None] + s)[:, None, :]
+    value = np.einsum("pij,i,j->p", g(d * np.hypot(X, Y)), w, w) * d * d
     mean[i, j] = mean[j, i] = value

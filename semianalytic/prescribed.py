@@ -4,8 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
+
+from semianalytic.ring_quadrature import gauss_legendre
 
 Array = NDArray[np.floating]
 
@@ -35,13 +36,12 @@ class Prescribed:
 
     @property
     def load(self) -> float:
-        s, w = legendre.leggauss(200)
-        t = (1 + s) / 2
+        t, w = gauss_legendre(200)
         r = self.radius * (1 - t**2)
         p = np.asarray(self.function(r), dtype=float)
         if p.shape != r.shape or not np.all(np.isfinite(p)):
             raise ValueError("pressure(r) must return a finite value [Pa] for every r <= load_radius")
-        return float(2 * np.pi * self.radius * np.sum(w * p * r * t))
+        return float(4 * np.pi * self.radius * np.sum(w * p * r * t))
 
 
 def patch_mean(shape: Prescribed, x: Array, d: float) -> Array:
@@ -59,21 +59,20 @@ def patch_mean(shape: Prescribed, x: Array, d: float) -> Array:
     near = np.abs(r - shape.radius) < 3 * d
     inner = ~near & (r < shape.radius)
     mean = np.zeros(r.shape)
-    s, w = legendre.leggauss(3)
-    distance = np.hypot(X[inner, None, None] + s[:, None] * d / 2, Y[inner, None, None] + s * d / 2)
-    mean[inner] = np.einsum("pij,i,j->p", shape.pressure(distance), w, w) / 4
-    s, w = legendre.leggauss(12)
-    y = Y[near, None] + s * d / 2
+    s, w = gauss_legendre(3, -0.5, 0.5)
+    distance = np.hypot(X[inner, None, None] + s[:, None] * d, Y[inner, None, None] + s * d)
+    mean[inner] = np.einsum("pij,i,j->p", shape.pressure(distance), w, w)
+    s, w = gauss_legendre(12)
+    y = Y[near, None] + (s - 0.5) * d
     # X >= Y: the rim is crossed by lines along x, which end at X + d/2 or at the rim
     start = X[near, None] - d / 2
     rim = np.sqrt(np.maximum(shape.radius**2 - y**2, 0))
     length = np.clip(rim - start, 0, d)
-    v, wv = (1 + s) / 2, w / 2
-    along = (start + length)[..., None] - length[..., None] * v**2
+    along = (start + length)[..., None] - length[..., None] * s**2
     # rounding must not put the end of a line beyond the rim
     reach = np.where(length < d, shape.radius, np.inf)[..., None]
     value = shape.pressure(np.minimum(np.hypot(along, y[..., None]), reach))
-    mean[near] = np.einsum("pjk,pj,j,k->p", value, length, w / 2, 2 * v * wv) / d
+    mean[near] = np.einsum("pjk,pj,j,k->p", value, length, w, 2 * s * w) / d
     number = np.where(j == 0, 4, np.where(i == j, 4, 8)) - 3 * (i == 0)  # of equal patches by symmetry
     at_rim = float(np.sum((number * mean)[near]))
     if at_rim:

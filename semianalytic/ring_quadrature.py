@@ -1,4 +1,4 @@
-"""Gauss points on the rings around a point: on their arcs, and over their radii."""
+"""Gauss points: on an interval, on the arcs of the rings around a point and over their radii."""
 
 from functools import lru_cache
 from itertools import pairwise
@@ -42,7 +42,7 @@ def panels(
 
 def _graded(touches: list[float], inside: bool, scale: float, nodes: int) -> tuple[Array, Array]:
     """Gauss points and weights of rho up to the last touching ring, from the first or, inside, from 0."""
-    s, w = gauss(nodes)
+    s, w = gauss_legendre(nodes)
     crowded, slope = s**4, 4 * s**3 * w
     points: list[Array] = []
     weights: list[Array] = []
@@ -80,7 +80,7 @@ def _graded(touches: list[float], inside: bool, scale: float, nodes: int) -> tup
 
 
 @lru_cache
-def gauss(nodes: int) -> tuple[Array, Array]:
-    """Gauss-Legendre points and weights on [0, 1]."""
+def gauss_legendre(nodes: int, lower: float = 0.0, upper: float = 1.0) -> tuple[Array, Array]:
+    """Gauss-Legendre points and weights from ``lower`` to ``upper``."""
     s, w = np.polynomial.legendre.leggauss(nodes)
-    return (1 + s) / 2, w / 2
+    return (lower + upper) / 2 + (upper - lower) / 2 * s, (upper - lower) / 2 * w

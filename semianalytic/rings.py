@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from semianalytic.edge_shape import Shape
-from semianalytic.ring_quadrature import from_gap, gauss, panels
+from semianalytic.ring_quadrature import from_gap, gauss_legendre, panels
 
 Array = NDArray[np.floating]
 
@@ -115,7 +115,7 @@ def _around(discs: Sequence[Disc], x: Array, y: Array, scale: Array) -> list[Rin
     marks = [([abs(a - one), a + one], one < a) for one in r0]
     foot, radius, weight = panels(marks, least, first.radial)
     harmonics = np.zeros((len(discs), 7, foot.size))
-    s, w = gauss(first.angular)
+    s, w = gauss_legendre(first.angular)
     for begin in range(0, foot.size, AT_ONCE // first.angular):
         part = slice(begin, begin + AT_ONCE // first.angular)
         r, rho = r0[foot[part]], radius[part]
@@ -231,7 +231,7 @@ class SmoothContour:
         width = np.abs(high - low)
         missed = np.sqrt(np.maximum(2 * t_low, 0) / np.maximum(curvature, 1e-300))
         delta = np.where(crossing, outer * width, missed)
-        s, w = gauss(self.angular)
+        s, w = gauss_legendre(self.angular)
         beta, slope = from_gap(delta, width, crossing, s)
         phi = low[:, None] + np.sign(high - low)[:, None] * beta
         cos, sin = np.cos(phi), np.sin(phi)

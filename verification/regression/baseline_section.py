@@ -10,6 +10,7 @@ from verification.page.source_labels import source_label
 from verification.regression.baseline_change import COUNTED, CaseDrift, Regression, baseline_message
 from verification.regression.manifest import manifest_message
 from verification.regression.number_drift import FACTOR, RELATIVE, TOLERANCE, Drift, State
+from verification.running.case_result import CaseResult
 
 MOST = 40
 # How a state is shown without relying on colour: mark, class, rank in a column.
@@ -36,8 +37,8 @@ def state_cell(case: CaseDrift) -> Cell:
     return _state(case.state, note)
 
 
-def section(found: Regression | None, anchors: Mapping[str, str]) -> Section | None:
-    """The run compared with its baseline; None where that was not done.   anchors : of cases by name."""
+def section(found: Regression | None, anchors: Mapping[CaseResult, str]) -> Section | None:
+    """The run compared with its baseline; None where that was not done.   anchors : of the cases."""
     if found is None:
         return None
     if found.update is None:
@@ -114,9 +115,9 @@ def _state(state: State, note: str = "") -> Cell:
     return Cell(f"{mark} {state}", float(rank), f"verdict {css}".strip(), note)
 
 
-def _case_table(cases: Sequence[CaseDrift], anchors: Mapping[str, str]) -> Table:
-    """State and counts of numbers of each case; ``anchors`` leads to cases by name."""
-    places = {name: f"#{anchor}" for name, anchor in anchors.items()}
+def _case_table(cases: Sequence[CaseDrift], anchors: Mapping[CaseResult, str]) -> Table:
+    """State and counts of numbers of each case; ``anchors`` leads to the cases."""
+    places = {result.name: f"#{anchor}" for result, anchor in anchors.items()}
     columns: list[tuple[str, Callable[[CaseDrift], Value]]] = [
         ("case", lambda case: Cell(case.title, note=case.name, href=places.get(case.name, ""))),
         ("state", state_cell),

@@ -44,11 +44,6 @@ MOST_UNPACKED = 60
 HTML = Path(__file__).parent / "html"
 
 
-def _baseline(material: Material) -> Section | None:
-    anchors = {result.name: anchor for result, anchor in material.anchors.items()}
-    return baseline_section.section(material.evidence.baseline, anchors)
-
-
 # Pages about the run as a whole in their order, under the heading of the contents; None is left out.
 SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
     ("Results", overview_section.section),
@@ -62,7 +57,7 @@ SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
     ("Evidence", refinement_section.finite_element_section),
     ("Evidence", detection_sections.faults_of),
     ("Evidence", detection_sections.self_tests_of),
-    ("Evidence", _baseline),
+    ("Evidence", lambda material: baseline_section.section(material.evidence.baseline, material.anchors)),
     ("Evidence", lambda _: guests_section.section()),
 )
 
@@ -86,11 +81,8 @@ def render(material: Material) -> str:
     # Results may hold numbers that overflow or are not finite; the page shows them as they are.
     with np.errstate(all="ignore"):
         cases = [contents(material, result) for result in material.results]
-        sections = [
-            (group, found)
-            for group, make in SECTIONS
-            if (found := _dated(material, make(material))) is not None
-        ]
+        made = [(group, _dated(material, make(material))) for group, make in SECTIONS]
+        sections = [pair for pair in made if pair[1] is not None]
         groups = [
             (group, [section for _, section in some])
             for group, some in groupby(sections, key=lambda pair: pair[0])

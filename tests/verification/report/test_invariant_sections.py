@@ -7,8 +7,8 @@ from synthetic_results import INFO, STEEL, contact, result_of
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
 from verification.report.report_material import Material
+from verification.report.sections.case_page import dominating_parameter
 from verification.report.sections.invariants_section import invariant_table, section
-from verification.report.tables.case_tables import dominating_parameter
 
 HOLDS = Invariant("load balance", "semianalytic", 1e-7, 1e-5, Outcome.AGREES, "int p dA = W: off by 1e-07")
 CLOSE = Invariant(

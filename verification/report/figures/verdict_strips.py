@@ -7,6 +7,7 @@ then of U: the bars of a strip make a tinted area, and a dot outside that area d
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, floor, isfinite, log10
+from typing import Any
 
 import numpy as np
 from markupsafe import Markup, escape
@@ -84,6 +85,20 @@ def worst(items: Sequence[Item]) -> Item | None:
         ),
         default=None,
     )
+
+
+def case_strips(result: CaseResult, anchor: str) -> dict[str, Any] | None:
+    """All comparisons of a case, a strip for each line."""
+    items = items_of(result)
+    if not items:
+        return None
+    axis = axis_of(items)
+    rows = []
+    for line in dict.fromkeys(item.claim.line for item in items):
+        mine = [item for item in items if item.claim.line == line]
+        bad = sum(item.verdict.outcome is not Outcome.AGREES for item in mine)
+        rows.append((line, draw_strip(mine, axis, f"comparisons on {line}", anchor), bad, len(mine)))
+    return {"rows": rows, "scale": draw_axis(axis)}
 
 
 def draw_strip(items: Sequence[Item], axis: Axis, label: str, anchor: str = "") -> Markup:

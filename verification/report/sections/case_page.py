@@ -4,17 +4,20 @@ import shlex
 from pathlib import PurePath
 from typing import Any
 
+import numpy as np
+
 from verification.cases.case_file import default_cases
 from verification.cases.published_file import published_cases
-from verification.judging.verdict import Outcome
+from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.number_text import scientific
 from verification.page.source_labels import OUTCOMES, pair_style, source_label, source_style, symbol_of
 from verification.page.symbol_text import typeset
 from verification.problem.coated_contact import BALL
+from verification.problem.quantity import QUANTITIES
 from verification.report.figures.field_pictures import pictures
 from verification.report.figures.line_panels import case_figures
 from verification.report.figures.problem_sketch import sketch
-from verification.report.figures.verdict_strips import axis_of, draw_axis, draw_strip, items_of, ordered
+from verification.report.figures.verdict_strips import case_strips, items_of, ordered
 from verification.report.report_material import Material
 from verification.report.sections import invariants_section, published_section
 from verification.report.tables.case_lookup import contact_radius, divisor, layers, scale, slug
@@ -23,7 +26,6 @@ from verification.report.tables.case_tables import (
     comparison_table,
     contact_tables,
     diagnostics_table,
-    dominating_parameter,
     facts,
     failing_table,
     layer_table,
@@ -52,9 +54,9 @@ def contents(material: Material, result: CaseResult) -> dict[str, Any]:
     file = slug(result.name)
     broken = [one for one in result.invariants if one.outcome is not Outcome.AGREES]
     return common | {
-        "strips": _strips(result, material.anchors[result]),
-        "sketch": sketch(result),
         "contact": contact_tables(result),
+        "strips": case_strips(result, material.anchors[result]),
+        "sketch": sketch(result),
         "pictures": pictures(result, material.planes.get(result.name)),
         "figures": case_figures(result),
         "beyond": material.evidence.beyond.get(result.name, ()),
@@ -105,20 +107,6 @@ def summary(result: CaseResult) -> str:
     return f"{text}." if total else "No comparison was possible."
 
 
-def _strips(result: CaseResult, anchor: str) -> dict[str, Any] | None:
-    """All comparisons of a case, a strip for each line."""
-    items = items_of(result)
-    if not items:
-        return None
-    axis = axis_of(items)
-    rows = []
-    for line in dict.fromkeys(item.claim.line for item in items):
-        mine = [item for item in items if item.claim.line == line]
-        bad = sum(item.verdict.outcome is not Outcome.AGREES for item in mine)
-        rows.append((line, draw_strip(mine, axis, f"comparisons on {line}", anchor), bad, len(mine)))
-    return {"rows": rows, "scale": draw_axis(axis)}
-
-
 def data(material: Material) -> dict[str, Any]:
     """What the script of the page knows of the comparisons: names once, then rows of indices and numbers."""
     quantities: dict[str, int] = {}
@@ -158,6 +146,35 @@ def data(material: Material) -> dict[str, Any]:
         "outcomes": [f"{style.mark} {style.word}" for style in OUTCOMES.values()],
         "cases": cases,
     }
+
+
+def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> str:
+    """The source with the larger uncertainty at the deciding point, with its dominating parameter.
+
+    U of a stress or pressure is that of p0, of a displacement or the stiffness that of the approach, with its
+    own part due to the first parameter, the edge terms or the size of patches or elements: the excess of U
+    over the other parts belongs to the first.
+    """
+    sides = []
+    for source in claim.between:
+        profile = result.profile_of.get((claim.quantity, claim.line, source))
+        if profile is not None and profile.uncertainty is not None and profile.position.size:
+            at = 0 if verdict.worst is None else int(np.argmin(np.abs(profile.position - verdict.worst)))
+            sides.append((float(profile.uncertainty[at]), source))
+    if not sides or not max(sides)[0] > 0:
+        return ""
+    U, source = max(sides)
+    budget = next((s.budget for s in result.sources if s.source == source), ())
+    scalar_claim = any(q == claim.quantity for q, _, _ in budget)
+    like = "approach" if QUANTITIES[claim.quantity].kind in ("slope", "displacement") else "peak_pressure"
+    quantity = claim.quantity if scalar_claim else like
+    parts = [(name, value) for q, name, value in budget if q == quantity]
+    if not parts:
+        return source_label(source)
+    if not scalar_claim:
+        others = sum(value for _, value in parts[1:])
+        parts[0] = (parts[0][0], max(U - others, 0.0))
+    return f"{source_label(source)}: {max(parts, key=lambda item: item[1])[0]}"
 
 
 def _short(value: float | None, digits: int = 3) -> float | None:

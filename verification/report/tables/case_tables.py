@@ -5,8 +5,6 @@ from functools import partial
 from math import isfinite, isinf
 from typing import Any
 
-import numpy as np
-
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.number_text import aligned, engineering, plain, scientific
 from verification.page.page_parts import Cell, Table, number, outcome_cell, row, table_of
@@ -176,35 +174,6 @@ def failing_table(result: CaseResult) -> Table:
 def _badness(verdict: Verdict) -> tuple[int, float]:
     margin = verdict.margin if verdict.margin is not None else 0.0
     return OUTCOMES[verdict.outcome].rank, margin if isfinite(margin) else 0.0
-
-
-def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> str:
-    """The source with the larger uncertainty at the deciding point, with its dominating parameter.
-
-    U of a stress or pressure is that of p0, of a displacement or the stiffness that of the approach, with its
-    own part due to the first parameter, the edge terms or the size of patches or elements: the excess of U
-    over the other parts belongs to the first.
-    """
-    sides = []
-    for source in claim.between:
-        profile = result.profile_of.get((claim.quantity, claim.line, source))
-        if profile is not None and profile.uncertainty is not None and profile.position.size:
-            at = 0 if verdict.worst is None else int(np.argmin(np.abs(profile.position - verdict.worst)))
-            sides.append((float(profile.uncertainty[at]), source))
-    if not sides or not max(sides)[0] > 0:
-        return ""
-    U, source = max(sides)
-    budget = next((s.budget for s in result.sources if s.source == source), ())
-    scalar_claim = any(q == claim.quantity for q, _, _ in budget)
-    like = "approach" if QUANTITIES[claim.quantity].kind in ("slope", "displacement") else "peak_pressure"
-    quantity = claim.quantity if scalar_claim else like
-    parts = [(name, value) for q, name, value in budget if q == quantity]
-    if not parts:
-        return source_label(source)
-    if not scalar_claim:
-        others = sum(value for _, value in parts[1:])
-        parts[0] = (parts[0][0], max(U - others, 0.0))
-    return f"{source_label(source)}: {max(parts, key=lambda item: item[1])[0]}"
 
 
 def budget_table(result: CaseResult) -> Table:

@@ -1,15 +1,11 @@
-"""Work for another process: a task, and the order in which tasks run."""
+"""Work for another process: a task."""
 
-from collections import deque
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
-from verification.running.checked_files import StoreError, read_checked
-
-T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
 
 
@@ -34,22 +30,3 @@ class Task(Generic[T_co]):
     cost: float = 0.0
     together: Hashable = None
     ahead: tuple[str, ...] = ()
-
-    def result(self, seconds: float) -> T_co:
-        """The result in the file at ``path``; that of ``failed`` where the file cannot be used."""
-        try:
-            return self.read(read_checked(self.path))
-        except (StoreError, ValueError, KeyError, TypeError, AttributeError) as error:
-            return self.failed(" ".join(str(error).split()), seconds)
-
-
-Group = deque[tuple[int, Task[T]]]  # tasks of one process, each with its number
-
-
-def in_order(tasks: Sequence[Task[T]]) -> deque[Group[T]]:
-    """Tasks by process, the costliest first: a long one that starts last would be waited for alone."""
-    groups: dict[Hashable, Group[T]] = {}
-    for number, task in enumerate(tasks):
-        key = (number, None) if task.together is None else task.together
-        groups.setdefault(key, deque()).append((number, task))
-    return deque(sorted(groups.values(), key=lambda group: -sum(task.cost for _, task in group)))

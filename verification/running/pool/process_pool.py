@@ -11,17 +11,18 @@ import sys
 import tempfile
 import time
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import IO, Generic, TypeVar
 
-from verification.running.checked_files import StoreError
+from verification.running.checked_files import StoreError, read_checked
 from verification.running.pool.fork_guard import UNWRITABLE
-from verification.running.pool.pool_task import Group, Task, in_order
+from verification.running.pool.pool_task import Task
 from verification.running.provenance import cores
 
 T = TypeVar("T")
+Group = deque[tuple[int, Task[T]]]  # tasks of one process, each with its number
 
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "DUCC0_NUM_THREADS")
 # glibc keeps freed memory for the next array. Else the kernel clears each page anew: a tenth of the time.
@@ -48,7 +49,7 @@ def run_tasks(
     meanwhile : called once, when the first tasks have started.
     """
     threads = max(1, cores() // jobs)
-    waiting = in_order(tasks)
+    waiting = _in_order(tasks)
     results: dict[int, T] = {}
     slots = [Slot[T](threads) for _ in range(min(jobs, len(waiting)))]
     try:
@@ -68,6 +69,15 @@ def run_tasks(
             slot.stop()
             slot.errors.close()
     return [results[number] for number in range(len(tasks))]
+
+
+def _in_order(tasks: Sequence[Task[T]]) -> deque[Group[T]]:
+    """Tasks by process, the costliest first: a long one that starts last would be waited for alone."""
+    groups: dict[Hashable, Group[T]] = {}
+    for number, task in enumerate(tasks):
+        key = (number, None) if task.together is None else task.together
+        groups.setdefault(key, deque()).append((number, task))
+    return deque(sorted(groups.values(), key=lambda group: -sum(task.cost for _, task in group)))
 
 
 def _start_idle(slots: "list[Slot[T]]", waiting: deque[Group[T]], started: Callable[[str], None]) -> None:
@@ -154,7 +164,10 @@ class Slot(Generic[T]):
             return task.failed(f"its process {_death(code, self.errors)}", seconds)
         if _identity(task.path) == self.earlier:
             return task.failed("its process left no result; run the case alone", seconds)
-        return task.result(seconds)
+        try:
+            return task.read(read_checked(task.path))
+        except (StoreError, ValueError, KeyError, TypeError, AttributeError) as error:
+            return task.failed(" ".join(str(error).split()), seconds)
 
     def _code(self) -> int | None:
         """Exit code of the task at work, negative for a signal; None while it runs."""
