@@ -222,7 +222,7 @@ def solve_shape(
         # vertices at the radii of the edge on y = 0, none right beside another
         radii = sorted(round(abs(x), 4) for x in begin.edges)
         apart = tuple(r for r, before in zip(radii, [0.0, *radii], strict=False) if r - before > surface / 10)
-        d = discretised(solid, coarser * size, coarser * surface, order, growth=0.8, edges=apart)
+        d = discretised(solid, coarser * size, coarser * surface, order, growth=0.7, edges=apart)
         compliance = harmonic_compliance(solid, d, harmonics, fold, DENSITY / coarser, inner)
         found = corrected(compliance, begin, scaled_height, load / unit.load, correcting)
         if not found.converged:
