@@ -194,7 +194,7 @@ def iteration_counts(problem: CoatedContact, solid: str) -> list[ExactError]:
     """Iterations on patches alone; all that are allowed where the contact is refused."""
     import semianalytic
 
-    numerics = {"patches": PATCHES, "edge_correction": False, "estimate_uncertainty": False}
+    numerics: dict[str, Any] = {"patches": PATCHES, "edge_correction": False, "estimate_uncertainty": False}
     try:
         count = semianalytic.solve(**keywords(problem), **numerics).diagnostics.iterations
     except semianalytic.NotConverged:
@@ -206,7 +206,7 @@ def grid_ratios(problem: CoatedContact, solid: str) -> list[ExactError]:
     """Patches of the last grid but one over those of the last, from whose change an uncertainty follows."""
     import semianalytic
 
-    found = semianalytic.solve(**keywords(problem), patches=PATCHES, accuracy=None)
+    found: Any = semianalytic.solve(**keywords(problem), patches=PATCHES, accuracy=None)
     ratio = found.coarser.diagnostics.patches_per_side / PATCHES
     return [ExactError("grids of the uncertainty", solid, "ratio of patches", ratio)]
 
