@@ -256,11 +256,11 @@ class Solution:
 
     def _rim(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Error [Pa] that a staircase makes of an edge: the highest pressure beside it, felt over a patch."""
-        d, loaded = self.diagnostics.patch_size, np.pad(self.patch_pressure > 0, 1)
+        d, loaded, ends = self.diagnostics.patch_size, np.pad(self.patch_pressure > 0, 1), self.nodes[[0, -1]]
         inside, outside = (distance_transform_cdt(one, metric="chessboard") for one in (loaded, ~loaded))
         highest = float(self.patch_pressure[inside[1:-1, 1:-1] == 1].max(initial=0.0))
-        away = interpolated(self.nodes, (np.maximum(inside, outside) - 1.0)[1:-1, 1:-1], x, y, order=1) * d
-        return highest * d / (d + np.hypot(away, z))
+        away, x, y = (np.maximum(inside, outside) - 1.0)[1:-1, 1:-1], np.clip(x, *ends), np.clip(y, *ends)
+        return highest * d / (d + np.hypot(interpolated(self.nodes, away, x, y, order=1) * d, z))
 
     def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Uncertainty of the pressure [Pa] of a smooth edge: of its shape at the same x/a, and of its

@@ -56,6 +56,14 @@ def test_without_edge_correction_hertz_is_of_first_order():
     assert s.contact_radius == pytest.approx(A_H, rel=1 / 58)
 
 
+def test_the_error_of_a_staircase_falls_beyond_the_grid_too():
+    s = solve(edge_correction=False, estimate_uncertainty=True)
+    at = np.array([s.nodes[-1], 1.5 * s.nodes[-1], 2.0 * s.nodes[-1]])
+    U = s.stress_uncertainty(at, 0.0, 0.0)[0, 0]
+    assert (U[1:] <= 1.01 * U[0]).all()
+    assert (s.pressure_uncertainty(at)[1:] <= s.pressure_uncertainty(at[:1])).all()
+
+
 def test_scaling_with_load_and_radius(coated):
     # lengths times s, load times s^2: the same pressure, similar figures
     s = 3.7

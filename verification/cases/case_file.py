@@ -301,6 +301,8 @@ def _odd(number: int) -> int:
 class _SemianalyticNumerics(Strict):
     patches: Annotated[int, Field(ge=33, le=4097), AfterValidator(_odd)] | None = None
     conversion: Literal["split", "plain"] | None = None
+    edge_correction: bool | None = None
+    approach: Metres | None = None  # in place of the load
     max_iterations: Annotated[int, Field(ge=1, le=100_000)] | None = None
 
 

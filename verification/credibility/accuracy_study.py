@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,6 +12,8 @@ from verification.credibility.exact_errors import (
     convolution_errors,
     disc_errors,
     film_errors,
+    grid_ratios,
+    iteration_counts,
     turned_ellipse,
 )
 from verification.credibility.refinement_studies import Refinement, refined_grid, refined_mesh
@@ -34,6 +36,7 @@ STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL)
 COATED = CoatedContact(10e-3, 20.0, ((4 * STEEL[0], 0.3, BARE.a_h),), STEEL)
 FRICTION = 0.25
+FILM = replace(COATED, coatings=((STEEL[0] / 10, 0.3, 0.3 * BARE.a_h),))  # whose edge needs many polynomials
 COST = 7.0  # of the whole study, over that of an uncoated contact
 PROBLEM = "a sphere of 10 mm under 20 N on steel, bare or with a coating of E1/E2 = 4, h = a_h"
 
@@ -45,7 +48,7 @@ class AccuracyStudy:
     """Errors of both methods with provenance; ``failures`` are messages on what could not be computed.
 
     conversions : of the coated solid.   discs : under given pressures.   ellipses : contacts
-    that are no discs.
+    that are no discs, with iterations and grids of a disc.
     commit : None outside a checkout.
     """
 
@@ -81,6 +84,7 @@ def measure() -> AccuracyStudy:
     mesh = partial(refined_mesh, COATED, solid="coated", solve=available["fem_reference"])
     refinements = (
         grid(COATED, FINE, solid="coated", setting=CORRECTED),
+        grid(FILM, (129,), solid="compliant film", setting=CORRECTED),
         grid(COATED, solid="coated", setting=STAIRCASE, edge_correction=False),
         # Its convolution kernel alone costs more than the rest, so it ends one level earlier.
         grid(COATED, (33, 65, 129), solid="coated", setting=PLAIN, edge_correction=False, conversion="plain"),
@@ -92,6 +96,7 @@ def measure() -> AccuracyStudy:
     conversions = attempt("conversions of the influence coefficients", lambda: conversion_errors(COATED))
     discs = attempt("discs", lambda: discs_of())
     ellipses = attempt("ellipses", lambda: tuple(turned_ellipse(BARE)))
+    ellipses += attempt("iterations, grids", lambda: counts_of())
     seconds = time.perf_counter() - begin
     return AccuracyStudy(
         refinements, conversions, tuple(failures), seconds, commit(), versions(), discs, ellipses
@@ -104,6 +109,11 @@ def discs_of() -> tuple[ExactError, ...]:
     return (*found, *convolution_errors(COATED, "coated"), *film_errors(COATED))
 
 
+def counts_of() -> tuple[ExactError, ...]:
+    """Iterations that a contact needs, and how far apart the grids of its uncertainty are."""
+    return (*iteration_counts(COATED, "coated"), *grid_ratios(COATED, "coated"))
+
+
 def quick() -> tuple[Invariant, ...]:
     """The verdicts of a shorter study, part by part up to the first that disagrees: fewer grids.
 
@@ -113,10 +123,13 @@ def quick() -> tuple[Invariant, ...]:
     parts: tuple[Callable[[], tuple[Invariant, ...]], ...] = (
         lambda: verdicts(errors=discs_of()),
         lambda: verdicts([grid(COATED, (129,), solid="coated", setting=CORRECTED)]),
+        lambda: verdicts([grid(FILM, (129,), solid="compliant film", setting=CORRECTED)]),
         lambda: verdicts(
             [grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False)]
         ),
         lambda: verdicts(errors=turned_ellipse(BARE)),
+        lambda: verdicts(errors=iteration_counts(COATED, "coated")),
+        lambda: verdicts(errors=grid_ratios(COATED, "coated")),
     )
     found: list[Invariant] = []
     for part in parts:

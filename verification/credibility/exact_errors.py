@@ -16,7 +16,7 @@ from scipy.signal import convolve
 
 from verification.judging.invariants.influence_error import coefficient_error
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact
+from verification.problem.coated_contact import CoatedContact, keywords
 from verification.problem.line_profile import lines_of
 from verification.sources.references.axisymmetric_pressure import AbelPressure
 from verification.sources.references.hankel_field import HankelField
@@ -37,12 +37,14 @@ FILMS = {"film of one patch": 1.0, "film of five patches": 5.0}  # thickness ove
 ANGLE = 0.4  # of the long axis from x
 BETWEEN = 0.4  # of a patch, by which the turned ellipse lies beside a patch centre
 WIDE = 1.15  # half-width of the grid over the long semi-axis
+MOST = 600  # iterations that a solve allows
 
 
 @dataclass(frozen=True)
 class ExactError:
     """Largest ``error`` of ``quantity`` under ``pressure`` on ``solid``: stress and plane over the largest
-    pressure, displacements over the exact one at the centre, scalars of an ellipse over themselves."""
+    pressure, displacements over the exact one at the centre, scalars of an ellipse over themselves; or a
+    count that has a limit."""
 
     pressure: str
     solid: str
@@ -186,6 +188,27 @@ def film_errors(problem: CoatedContact) -> list[ExactError]:
         error = coefficient_error(film, SIDE * problem.a_h)
         found.append(ExactError("one patch loaded", name, "influence coefficients", error))
     return found
+
+
+def iteration_counts(problem: CoatedContact, solid: str) -> list[ExactError]:
+    """Iterations on patches alone; all that are allowed where the contact is refused."""
+    import semianalytic
+
+    numerics: dict[str, Any] = {"patches": PATCHES, "edge_correction": False, "estimate_uncertainty": False}
+    try:
+        count = semianalytic.solve(**keywords(problem), **numerics).diagnostics.iterations
+    except semianalytic.NotConverged:
+        count = MOST
+    return [ExactError("patches alone", solid, "iterations", count)]
+
+
+def grid_ratios(problem: CoatedContact, solid: str) -> list[ExactError]:
+    """Patches of the last grid but one over those of the last, from whose change an uncertainty follows."""
+    import semianalytic
+
+    found: Any = semianalytic.solve(**keywords(problem), patches=PATCHES, accuracy=None)
+    ratio = found.coarser.diagnostics.patches_per_side / PATCHES
+    return [ExactError("grids of the uncertainty", solid, "ratio of patches", ratio)]
 
 
 def turned_ellipse(problem: CoatedContact) -> list[ExactError]:

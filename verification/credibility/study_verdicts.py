@@ -13,6 +13,8 @@ of a patch, d/a = 0.009 at 257 patches:
                  is interpolated to third order, (d/a)^3 = 4e-6 on 129 patches
     convolution  DC-FFT is the sum over patches but for rounding
     ellipses     as corrected, on 129 patches
+    iterations   six on patches alone; Polonsky and Keer's own iteration takes ten times as many
+    grids        a change on refining by less than a third says little of the error that is left
 """
 
 from collections.abc import Iterable
@@ -30,6 +32,7 @@ CORRECTED = "split conversion, corrected edge"
 STAIRCASE = "split conversion, staircase edge"
 PLAIN = "plain conversion, staircase edge"
 SOURCE = "semianalytic"
+EXACT = "error against the exact solution"
 
 
 # By quantity: the largest error on 257 patches a side, the power of 257/patches by which it may be larger on
@@ -77,6 +80,7 @@ OTHERS = {
     "approach": 5e-6,
     "load": 5e-6,
 }
+COUNTS = {"iterations": 12, "ratio of patches": 0.75}
 
 
 def verdicts(
@@ -92,7 +96,8 @@ def verdicts(
             found += _of_refinement(study)
     for one in errors:
         name = f"{one.solid}: {'disc, ' * (one.quantity in DISCS)}{one.pressure}: {one.quantity}"
-        found.append(_below(name, one.error, (DISCS | OTHERS)[one.quantity]))
+        law = "below its limit" if one.quantity in COUNTS else EXACT
+        found.append(_below(name, one.error, (DISCS | OTHERS | COUNTS)[one.quantity], law))
     for conversion in conversions:
         if conversion.conversion == "split":
             found.append(_below("coated: influence coefficients", conversion.largest, BOUND))
@@ -130,5 +135,5 @@ def _of_refinement(one: Refinement) -> list[Invariant]:
     return found
 
 
-def _below(name: str, error: float, limit: float) -> Invariant:
-    return decide(name, SOURCE, "error against the exact solution", error, limit, cap=np.inf)
+def _below(name: str, error: float, limit: float, law: str = EXACT) -> Invariant:
+    return decide(name, SOURCE, law, error, limit, cap=np.inf)

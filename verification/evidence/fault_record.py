@@ -32,7 +32,7 @@ COLUMNS = {
     "coated, exact": "coated cases, the integral equation on one side",
     "coated, methods": "coated cases, method against method",
     "invariants": "invariants that one solution must satisfy by itself",
-    "studies": "patches alone, corrected edge, discs, ellipses against exact ones, if nothing else noticed",
+    "studies": "errors against exact solutions, iterations, ratio of grids, if nothing else noticed",
     "published": "tables published by others (coatcheck run published)",
     "self-tests": "known answers of the harness itself",
     "manifest": "less that is judged: points, lines, invariants, or a wider cap or scale",

@@ -24,7 +24,8 @@ def solve_semianalytic(problem: Problem, numerics: Mapping[str, Any] | None = No
 
         return loading(problem, partial(solve_semianalytic, numerics=numerics))
     solve = semianalytic.solve_prescribed if isinstance(problem, PrescribedLoad) else semianalytic.solve
-    return solve(**keywords(problem), **(numerics or {}))
+    given = {"load": None} if "approach" in (numerics or {}) else {}  # which is that of the load
+    return solve(**keywords(problem) | given, **(numerics or {}))
 
 
 @lru_cache(maxsize=1)

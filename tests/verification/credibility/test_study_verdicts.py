@@ -60,7 +60,7 @@ def clean():
 
 def test_every_part_meets_its_limit(clean):
     assert [row.name for row in clean if row.outcome is not Outcome.AGREES] == []
-    assert {row.name.partition(":")[0] for row in clean} == {"coated", "uncoated", *FILMS}
+    assert {row.name.partition(":")[0] for row in clean} == {"coated", "uncoated", "compliant film", *FILMS}
 
 
 @pytest.mark.parametrize(
@@ -97,6 +97,20 @@ def test_a_spoiled_part_does_not(edit, part):
     with planted((edit,)):
         bad = [row.name for row in accuracy_study.quick() if row.outcome is Outcome.DISAGREES]
     assert any(name.endswith(part) for name in bad), bad
+
+
+@pytest.mark.parametrize(
+    ("fault", "part"),
+    [
+        ("few_polynomials", "compliant film: split conversion, corrected edge: a, N = 129"),
+        ("step_outside_contact", "coated: patches alone: iterations"),
+        ("grid_too_small", "coated: patches alone: iterations"),
+        ("levels_alike", "coated: grids of the uncertainty: ratio of patches"),
+    ],
+)
+def test_the_edge_of_a_film_the_iterations_and_the_grids_are_judged(fault, part):
+    with planted(FAULTS[fault].changes):
+        assert part in [row.name for row in accuracy_study.quick() if row.outcome is Outcome.DISAGREES]
 
 
 def test_a_dozen_plausible_slips_at_once_exit_with_1():
