@@ -211,20 +211,18 @@ class Solution:
     ) -> tuple[Array, Array]:
         """Displacement and its uncertainty [m], shape (3,) + points each.
 
-        With a smooth edge from its coarser companions, the largest of the components for each alike, and the
-        uncertainty of the approach; else the latter everywhere.
+        From coarser companions, the largest of the components for each alike, with that of the approach.
         Raises ValueError where no uncertainty was estimated.
         """
         stated = self._stated
-        if self._level.smooth() is None:
-            u = self.displacement(x, y, z, body)
-            return u, np.full(u.shape, stated.approach)
         u, second, third = fields.displacement(self._levels, self._body.named(body), x, y, z)
         last, before = (np.abs(one - other).max(axis=0) for one, other in ((u, second), (second, third)))
-        total = self._change(last, before, x, y) + RINGS * self.approach
+        if self._level.smooth() is None:
+            total = np.maximum(safety(self._refined) * last, before / 3) + stated.approach
+        else:
+            total = self._change(last, before, x, y) + RINGS * self.approach
         if self._level.shape is not None:
-            floor = DEFLECTED * self._floor / self.peak_pressure
-            total = total + stated.approach + floor * self.approach
+            total += stated.approach + DEFLECTED * self._floor / self.peak_pressure * self.approach
         return u, np.broadcast_to(total, u.shape).copy()
 
     def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat") -> Array:
@@ -240,19 +238,21 @@ class Solution:
         pressure due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
         Raises ValueError where no uncertainty was estimated.
         """
-        floor = self._other_parameters
         if self._level.given is not None:
             return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
         if self._level.shape is not None:
             return self._smooth_uncertainty(x, y)
+        return 2 * interpolated(self.nodes, self._refinement, x, y, order=1) + self._rim(x, y, 0.0)
+
+    @cached_property
+    def _refinement(self) -> Array:
+        """Uncertainty of the pressure of patches alone at the nodes [Pa], before it is doubled."""
         i, j = self.nodes[:, None], self.nodes[None, :]
         first, second, third = (level.pressure(i, j) for level in self._levels)
-        ratio = self._refined
-        difference = np.maximum(safety(ratio) * np.abs(first - second), np.abs(second - third) / 6)
-        reach = 2 * int(np.ceil(2 * ratio)) + 1
-        widened = maximum_filter(difference, size=reach, mode="nearest")
-        least = (2 * floor + RESOLUTION) * self.peak_pressure
-        return 2 * (interpolated(self.nodes, widened, x, y, order=1) + least) + self._rim(x, y, 0.0)
+        difference = np.maximum(safety(self._refined) * np.abs(first - second), np.abs(second - third) / 6)
+        reach = 2 * int(np.ceil(2 * self._refined)) + 1
+        widened: Array = maximum_filter(difference, size=reach, mode="nearest")
+        return widened + (2 * self._other_parameters + RESOLUTION) * self.peak_pressure
 
     def _rim(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Error [Pa] that a staircase makes of an edge: the highest pressure beside it, felt over a patch."""
