@@ -238,21 +238,21 @@ class Solution:
         pressure due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
         Raises ValueError where no uncertainty was estimated.
         """
+        least = (2 * self._other_parameters + RESOLUTION) * self.peak_pressure
         if self._level.given is not None:
             return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
         if self._level.shape is not None:
             return self._smooth_uncertainty(x, y)
-        return 2 * interpolated(self.nodes, self._refinement, x, y, order=1) + self._rim(x, y, 0.0)
+        return 2 * (interpolated(self.nodes, self._refinement, x, y, order=1) + least) + self._rim(x, y, 0.0)
 
     @cached_property
     def _refinement(self) -> Array:
-        """Uncertainty of the pressure of patches alone at the nodes [Pa], before it is doubled."""
-        i, j = self.nodes[:, None], self.nodes[None, :]
-        first, second, third = (level.pressure(i, j) for level in self._levels)
+        """Error of the pressure of patches alone at the nodes [Pa] by their size."""
+        first, second, third = (level.pressure(*np.ix_(self.nodes, self.nodes)) for level in self._levels)
         difference = np.maximum(safety(self._refined) * np.abs(first - second), np.abs(second - third) / 6)
         reach = 2 * int(np.ceil(2 * self._refined)) + 1
         widened: Array = maximum_filter(difference, size=reach, mode="nearest")
-        return widened + (2 * self._other_parameters + RESOLUTION) * self.peak_pressure
+        return widened
 
     def _rim(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Error [Pa] that a staircase makes of an edge: the highest pressure beside it, felt over a patch."""
