@@ -37,7 +37,7 @@ BEYOND = 0.5, 1.0
 FULL = 0.4  # of the harmonics count in full in a stress, those beyond ever less
 # Distances from an edge, over the triangles there, between which the series beside it is fitted; its half
 # powers, and as many to see what they add.
-BESIDE, HALVES = (1.2, 16.0), (3, 2)
+BESIDE, HALVES = (1.2, 24.0), (3, 2)
 
 
 def check_pressure(
