@@ -118,12 +118,13 @@ def _largest(material: Material) -> list[str]:
         worst = f"{scientific(edge[-1][0])}, cap {edge[-1][1].cap:g}"
         texts.append(f"Beside edges not round, in {len(edge)} comparisons: {worst}.")
     gaps = [
-        plane_difference(material.planes[result.name], float(divisor(result, "sigma_xx", 0.0)))
+        (plane_difference(material.planes[result.name], float(divisor(result, "sigma_xx", 0.0))), result.name)
         for result in material.contacts
         if result.name in material.planes
     ]
-    if known := [gap for gap in gaps if gap is not None]:
-        texts.append(f"In the pictures of sigma_xx, which are not judged: {scientific(max(known))}.")
+    if known := [(gap, name) for gap, name in gaps if gap is not None]:
+        gap, name = max(known)
+        texts.append(f"In the pictures of sigma_xx, which are not judged: {scientific(gap)} ({name}).")
     return texts
 
 
