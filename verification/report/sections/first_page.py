@@ -232,6 +232,8 @@ def worth(material: Material) -> list[Worth]:
     def recorded(name: str, value: str, href: str, key: str, started: str, commit: str | None) -> None:
         older = key in evidence.older
         note = f"{started[:10]}, {(commit or 'no commit')[:8]}{', older than code' if older else ''}"
+        vague = len(evidence.alarms.inconclusive) if evidence.alarms and key == "alarms" else 0
+        note = f"{vague} inconclusive, {note}" if vague else note
         found.append(Worth(name, value, href, None, note, older))
 
     invariants = [one for result in material.results for one in result.invariants]
@@ -257,9 +259,8 @@ def worth(material: Material) -> list[Worth]:
             silent = [row not in faults.alarms for row in faults.controls]
             share("negative controls left alone", silent, "#faults")
     if alarms := evidence.alarms:
-        vague = len(alarms.inconclusive)
-        value = f"{len(alarms.alarms) - vague} of {alarms.comparisons + alarms.invariants}"
-        value += f", {vague} inconclusive" if vague else ""
+        wrong = len(alarms.alarms) - len(alarms.inconclusive)
+        value = f"{wrong} of {alarms.comparisons + alarms.invariants}"
         recorded("false alarms", value, "#credibility", "alarms", alarms.started, alarms.commit)
     if evidence.maps is not None and evidence.maps.maps:
         count = str(len(evidence.maps.maps))
