@@ -64,6 +64,22 @@ def test_the_error_of_a_staircase_falls_beyond_the_grid_too():
     assert (s.pressure_uncertainty(at)[1:] <= s.pressure_uncertainty(at[:1])).all()
 
 
+def test_the_displacement_of_patches_alone_is_within_its_uncertainty_beside_the_staircase():
+    s, exact = solve(edge_correction=False, estimate_uncertainty=True), solve()
+    x = np.linspace(0, 1.2, 40) * A_H
+    u, U = s.displacement_with_uncertainty(x, 0.1 * A_H, 0 * x)
+    assert (np.abs(u - exact.displacement(x, 0.1 * A_H, 0 * x)) <= U).all()
+
+
+@pytest.mark.slow
+def test_a_grid_that_first_resolves_the_edge_is_followed_by_another():
+    # a soft film on a stiff one on a soft one: 987 patches are the first with polynomials enough
+    layers = ((4.975e9, 0.3564, 6.015e-6), (158.2e9, 0.2598, 33.92e-6), (0.9579e9, 0.08933, 34.95e-6))
+    s = solve(layers, radius=46.44e-3, load=7.311, substrate=(8.812e9, 0.2422), patches=257, accuracy=1e-5,
+              estimate_uncertainty=True)  # fmt: skip
+    assert s.uncertainty.contact_radius < 1e-5 * s.contact_radius
+
+
 def test_scaling_with_load_and_radius(coated):
     # lengths times s, load times s^2: the same pressure, similar figures
     s = 3.7
