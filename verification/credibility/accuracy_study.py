@@ -96,7 +96,8 @@ def measure() -> AccuracyStudy:
     conversions = attempt("conversions of the influence coefficients", lambda: conversion_errors(COATED))
     discs = attempt("discs", lambda: discs_of())
     ellipses = attempt("ellipses", lambda: tuple(turned_ellipse(BARE)))
-    ellipses += attempt("iterations, grids", lambda: counts_of())
+    ellipses += attempt("iterations", lambda: tuple(iteration_counts(COATED, "coated")))
+    ellipses += attempt("grids", lambda: tuple(grid_ratios(COATED, "coated")))
     seconds = time.perf_counter() - begin
     return AccuracyStudy(
         refinements, conversions, tuple(failures), seconds, commit(), versions(), discs, ellipses
@@ -107,11 +108,6 @@ def discs_of() -> tuple[ExactError, ...]:
     """Given pressures on both solids, Hertz's sliding on the coated one; DC-FFT; one patch of thin films."""
     found = disc_errors(COATED, "coated", FRICTION) + disc_errors(BARE, "uncoated", 0.0)
     return (*found, *convolution_errors(COATED, "coated"), *film_errors(COATED))
-
-
-def counts_of() -> tuple[ExactError, ...]:
-    """Iterations that a contact needs, and how far apart the grids of its uncertainty are."""
-    return (*iteration_counts(COATED, "coated"), *grid_ratios(COATED, "coated"))
 
 
 def quick() -> tuple[Invariant, ...]:

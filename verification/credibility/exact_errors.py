@@ -37,7 +37,7 @@ FILMS = {"film of one patch": 1.0, "film of five patches": 5.0}  # thickness ove
 ANGLE = 0.4  # of the long axis from x
 BETWEEN = 0.4  # of a patch, by which the turned ellipse lies beside a patch centre
 WIDE = 1.15  # half-width of the grid over the long semi-axis
-MOST = 600  # iterations that a solve allows
+MOST = 600  # iterations that are allowed
 
 
 @dataclass(frozen=True)
@@ -194,9 +194,10 @@ def iteration_counts(problem: CoatedContact, solid: str) -> list[ExactError]:
     """Iterations on patches alone; all that are allowed where the contact is refused."""
     import semianalytic
 
-    numerics: dict[str, Any] = {"patches": PATCHES, "edge_correction": False, "estimate_uncertainty": False}
+    numerics: dict[str, Any] = {"patches": PATCHES, "max_iterations": MOST, "edge_correction": False}
     try:
-        count = semianalytic.solve(**keywords(problem), **numerics).diagnostics.iterations
+        found = semianalytic.solve(**keywords(problem), **numerics, estimate_uncertainty=False)
+        count = found.diagnostics.iterations
     except semianalytic.NotConverged:
         count = MOST
     return [ExactError("patches alone", solid, "iterations", count)]

@@ -68,16 +68,20 @@ class AlarmRecord:
     ratios: tuple[Ratios, ...] = ()
 
     @property
+    def false_alarms(self) -> tuple[Alarm, ...]:
+        """The verdicts that claim an error, or have no result, where there is no error."""
+        return tuple(one for one in self.alarms if one.outcome is not Outcome.INCONCLUSIVE)
+
+    @property
     def inconclusive(self) -> tuple[Alarm, ...]:
-        """The verdicts that find U above its cap; all others claim an error where there is none."""
+        """The verdicts that find U above its cap."""
         return tuple(one for one in self.alarms if one.outcome is Outcome.INCONCLUSIVE)
 
     @property
     def tally(self) -> str:
         """Both numbers in words."""
-        count, vague = len(self.alarms) - len(self.inconclusive), self.inconclusive
-        text = f"{count} false alarms"
-        if vague:
+        text = f"{len(self.false_alarms)} false alarms"
+        if vague := self.inconclusive:
             problems = len({one.case for one in vague})
             text += f" and {len(vague)} inconclusive verdicts (U above its cap, in {problems} problems)"
         return f"{text} in {self.comparisons} comparisons and {self.invariants} invariants"

@@ -70,7 +70,10 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
     known = gather(tmp_path)
     assert known.alarms == record
     found = section(known)
-    assert f"{len(record.inconclusive)} inconclusive" in said(part(found, "7"))
+    assert len(record.alarms) == len(record.false_alarms) + len(record.inconclusive) > 0
+    text = said(part(found, "7"))
+    assert f"{len(record.false_alarms)} false alarms and {len(record.inconclusive)} inconclusive" in text
+    assert f"in {record.comparisons} comparisons" in text
     assert record.alarms[0].reason in said(found.parts[-2])
 
 

@@ -229,11 +229,11 @@ def worth(material: Material) -> list[Worth]:
         if held:
             found.append(Worth(name, _share(held), href, all(held), note))
 
-    def recorded(name: str, value: str, href: str, key: str, started: str, commit: str | None) -> None:
+    def recorded(
+        name: str, value: str, href: str, key: str, started: str, commit: str | None, also: str = ""
+    ) -> None:
         older = key in evidence.older
-        note = f"{started[:10]}, {(commit or 'no commit')[:8]}{', older than code' if older else ''}"
-        vague = len(evidence.alarms.inconclusive) if evidence.alarms and key == "alarms" else 0
-        note = f"{vague} inconclusive, {note}" if vague else note
+        note = f"{also}{started[:10]}, {(commit or 'no commit')[:8]}{', older than code' if older else ''}"
         found.append(Worth(name, value, href, None, note, older))
 
     invariants = [one for result in material.results for one in result.invariants]
@@ -259,9 +259,9 @@ def worth(material: Material) -> list[Worth]:
             silent = [row not in faults.alarms for row in faults.controls]
             share("negative controls left alone", silent, "#faults")
     if alarms := evidence.alarms:
-        wrong = len(alarms.alarms) - len(alarms.inconclusive)
-        value = f"{wrong} of {alarms.comparisons + alarms.invariants}"
-        recorded("false alarms", value, "#credibility", "alarms", alarms.started, alarms.commit)
+        value = f"{len(alarms.false_alarms)} of {alarms.comparisons + alarms.invariants}"
+        vague = f"{len(alarms.inconclusive)} inconclusive, " if alarms.inconclusive else ""
+        recorded("false alarms", value, "#credibility", "alarms", alarms.started, alarms.commit, vague)
     if evidence.maps is not None and evidence.maps.maps:
         count = str(len(evidence.maps.maps))
         recorded("assumptions mapped", count, "#model", "maps", *made_with(evidence.maps))
