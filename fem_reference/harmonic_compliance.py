@@ -20,6 +20,7 @@ Friction along x, q = f p, has the products with the shape functions of u_r and 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -34,14 +35,15 @@ DIRECT = 8  # harmonics below are solved one by one
 VANISHED = 2e-6
 # Points of the interpolation beyond for a factor e of m: 5 change no stress by 1e-5 p_h, 2.8 by 2e-3.
 DENSITY = 3.1
+NORMAL = np.array([1.0, 0.0, 0.0])[:, None, None]  # shares of a normal load
 
 
 @dataclass(frozen=True, eq=False)
 class HarmonicCompliance:
     """Response to the pressures that act on the unknowns ``loaded`` of one field on the surface of one mesh.
 
-    solved : m of each solution.  fields : by unit loads of it, on the sides of triangles (field vector,
-    nodes).   meridians : of the same m, factorised.  last, fold : harmonics 0, fold, 2 fold, .., last
+    solved : m of each solution.  fields : by unit loads of it, as ``Meridian.solve``, (unknowns, nodes).
+    meridians : of the same m, factorised.  last, fold : harmonics 0, fold, 2 fold, .., last
     """
 
     solid: LayeredSolid
@@ -66,12 +68,8 @@ class HarmonicCompliance:
     @cached_property
     def matrices(self) -> np.ndarray:
         """S_m, (harmonics, nodes, nodes)."""
-        deflection = [u[-self.discretisation.N :][self.loaded] for u in self.fields]
-        return np.array([sum(w * deflection[k] for k, w in self.weights(m)) for m in self.harmonics])
-
-    def weights(self, m: int) -> list[tuple[int, float]]:
-        """Solutions, by number, whose weighted sum is that of harmonic m."""
-        return _weights(self.solved, m)
+        found = [one.deflection(u, self.loaded) for one, u in zip(self.meridians, self.fields, strict=True)]
+        return np.array([sum(w * found[k] for k, w in _weights(self.solved, m)) for m in self.harmonics])
 
     def nodal_loads(self, r: np.ndarray, theta: np.ndarray, forces: np.ndarray, last: int) -> np.ndarray:
         """L of ``forces`` (columns, arcs, points), (harmonics to ``last``, nodes, columns).
@@ -98,7 +96,7 @@ class HarmonicCompliance:
         pressed = {int(m): L for m, L in zip(self.harmonics, loads, strict=True) if L.any()}
 
         def respond(k: int, columns: np.ndarray) -> np.ndarray:
-            return self.meridians[k].skeleton.extended(self.fields[k] @ columns)
+            return self.meridians[k].extended(self.fields[k] @ columns, NORMAL * columns)
 
         return _superposed(self.solved, pressed, respond)
 
@@ -117,7 +115,7 @@ class HarmonicCompliance:
 
         def respond(k: int, columns: np.ndarray) -> np.ndarray:
             one = known.get(solved[k]) or Meridian.of(self.solid, self.discretisation, solved[k])
-            return one.skeleton.extended(one.fields(self.loaded, columns))
+            return one.extended(one.solve(self.loaded, columns), columns)
 
         return _superposed(solved, pulled, respond)
 
@@ -158,10 +156,8 @@ def harmonic_compliance(
     solved = (*(m for m in wanted if m < DIRECT), *_high(last + 1, density))
     first = np.searchsorted(d.contact_vertices, inner, side="right") - 1
     loaded = d.contact[d.order * first :]
-    normal = np.zeros((3, loaded.size, loaded.size))
-    normal[0] = np.eye(loaded.size)
     meridians = tuple(Meridian.of(solid, d, m) for m in solved)
-    fields = tuple(one.fields(loaded, normal) for one in meridians)
+    fields = tuple(one.solve(loaded, NORMAL * np.eye(loaded.size)) for one in meridians)
     return HarmonicCompliance(solid, d, loaded, solved, fields, meridians, last, fold)
 
 
@@ -199,15 +195,15 @@ def _superposed(
     weights = {m: dict(_weights(solved, m)) for m in loads}
     between = [m for m in loads if m not in solved]
     found: dict[int, np.ndarray] = {}
-    total: np.ndarray = np.zeros((1, 1))
+    total: Any = 0.0
     for k, one in enumerate(solved):
         direct = [m for m in loads if m == one]
         wanted = direct + (between if one >= DIRECT else [])
         if wanted:
             u = respond(k, np.stack([weights[m][k] * loads[m] for m in wanted], axis=-1))
             found |= {m: u[:, j] for j, m in enumerate(direct)}
-            total = total + u[:, len(direct) :] if one >= DIRECT else total
-    return found | dict(zip(between, total.T, strict=False))
+            total += u[:, len(direct) :] if one >= DIRECT else 0.0
+    return found | dict(zip(between, total.T if between else (), strict=True))
 
 
 @dataclass(frozen=True, eq=False)
@@ -233,23 +229,35 @@ class Meridian:
         fixed += [field * d.N + still for field in range(count)]
         return cls(solid, d, m, K, ConstrainedFactor.of(K.matrix, np.concatenate([*fixed, K.inner.ravel()])))
 
-    def fields(self, loaded: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """Field vectors (n, columns) under ``loads`` (3, nodes, columns): normal, radial, angular products.
+    def solve(self, loaded: np.ndarray, loads: np.ndarray) -> np.ndarray:
+        """Free unknowns (free, columns) under ``loads`` (3, nodes, columns) normal, radial and angular.
 
-        On the sides of triangles alone.  loaded : unknowns of one field at the nodes.
-
-        Far away the displacement due to the resultant: normal for m = 0, tangential for m = 1.
+        loaded : unknowns of one field at the nodes
         """
-        m, d = self.harmonic, self.discretisation
-        far, count = d.locations[:, d.outer], 2 if m == 0 else 3
+        m, N = self.harmonic, self.discretisation.N
         normal, radial, angular = loads / (2 * np.pi if m == 0 else np.pi)
         # virtual work R U + T V with U = S - V
         load = [radial, normal] if m == 0 else [radial, angular - radial, normal]
-        at = np.concatenate([field * d.N + loaded for field in range(count)])
-        given = None
+        at = np.concatenate([field * N + loaded for field in range(len(load))])
+        return self.factor.solve(at, np.concatenate(load), self._far(loads) if m < 2 else None)
+
+    def _far(self, loads: np.ndarray) -> np.ndarray:
+        """Field vectors (n, columns) due to the resultant far away, normal (m = 0) or tangential (1)."""
+        m, d = self.harmonic, self.discretisation
+        u = np.zeros((self.skeleton.matrix.shape[0], loads.shape[-1]))
         if m < 2:
-            resultant = loads[0].sum(axis=0) if m == 0 else (loads[1] - loads[2]).sum(axis=0)
-            given = np.zeros((count * d.N, loads.shape[-1]))
-            for field, u in enumerate(self.solid.far_fields(int(m), 1.0, far)):
-                given[field * d.N + d.outer] = u[:, None] * resultant
-        return self.factor.solve(at, np.concatenate(load), given)
+            resultant = (loads[1] - loads[2] if m else loads[0]).sum(axis=0)
+            far = self.solid.far_fields(int(m), resultant, d.locations[:, d.outer])
+            u.reshape(len(far), d.N, -1)[:, d.outer] = far
+        return u
+
+    def extended(self, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
+        """Field vectors (n, columns) of the free unknowns u under ``loads``."""
+        whole = self._far(loads)
+        whole[self.factor.free] = u
+        return self.skeleton.extended(whole)
+
+    def deflection(self, u: np.ndarray, loaded: np.ndarray) -> np.ndarray:
+        """u_z at the nodes, of which the free unknowns are u."""
+        row = self.factor.rows(self.skeleton.matrix.shape[0] - self.discretisation.N + loaded)
+        return np.where(row[:, None] < 0, 0.0, u[row])

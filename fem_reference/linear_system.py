@@ -37,7 +37,7 @@ def factorised(matrix: sp.csc_matrix) -> Factor:
         relax=1,
         panel_size=4,
     ).solve
-    return lambda load: np.asarray(solve(load.astype(matrix.dtype)), dtype=float)
+    return lambda load: np.asarray(solve(load.astype(matrix.dtype, copy=False)), dtype=float)
 
 
 def _by_pardiso(upper: sp.csr_matrix) -> Factor:
@@ -102,36 +102,36 @@ def constrained_solve(
 
 @dataclass(frozen=True, eq=False)
 class ConstrainedFactor:
-    """K factorised once, with given values at the unknowns ``fixed``, for loads that are not known yet."""
+    """K factorised once, with given values at all unknowns but the ``free``, for loads not known yet."""
 
+    K: sp.csc_matrix
     factor: Factor
     free: np.ndarray
-    fixed: np.ndarray
-    beside: sp.csr_matrix
 
     @classmethod
     def of(cls, K: sp.csc_matrix, fixed: np.ndarray) -> "ConstrainedFactor":
-        fixed = np.unique(fixed)
-        A, _, _, free = condense(K, np.zeros(K.shape[0]), D=fixed)
-        return cls(factorised(A.tocsc()), free, fixed, K[:, fixed].tocsr()[free])
+        A, _, _, free = condense(K, np.zeros(K.shape[0]), D=np.unique(fixed))
+        return cls(K, factorised(A.tocsc()), free)
+
+    def rows(self, at: np.ndarray) -> np.ndarray:
+        """Numbers among the ``free`` unknowns of those ``at``, -1 of one that is given."""
+        row = np.full(self.K.shape[0], -1)
+        row[self.free] = np.arange(self.free.size)
+        return np.asarray(row[at])
 
     def solve(self, at: np.ndarray, load: np.ndarray, given: np.ndarray | None = None) -> np.ndarray:
-        """u (n, columns) of K u = load with u = ``given``, or 0, at the unknowns ``fixed``.
+        """u (free, columns) of K u = load with u = ``given``, or 0, at all others.
 
         at, load : the unknowns that are loaded (k,), each once, and their loads (k, columns)
-        given : (n, columns)
+        given : (n, columns), 0 at the ``free``
         To the rounding of the factor: displacements are read, not forces.
         """
-        n, columns = self.beside.shape[0] + self.fixed.size, load.shape[1]
-        u = np.zeros((n, columns)) if given is None else given.copy()
-        row = np.full(n, -1)
-        row[self.free] = np.arange(self.free.size)
-        free = row[at] >= 0
-        for begin in range(0, columns, _COLUMNS):
+        u, row = np.empty((self.free.size, load.shape[1]), order="F"), self.rows(at)
+        for begin in range(0, load.shape[1], _COLUMNS):
             some = slice(begin, begin + _COLUMNS)
-            force = np.zeros((self.free.size, load[:, some].shape[1]), order="F")
-            force[row[at][free]] = load[free, some]
+            force = np.zeros(u[:, some].shape, order="F")
+            force[row[row >= 0]] = load[row >= 0, some]
             if given is not None:
-                force -= self.beside @ given[self.fixed, some]
-            u[self.free, some] = self.factor(force)
+                force -= (self.K @ given[:, some])[self.free]
+            u[:, some] = self.factor(force)
         return u

@@ -260,21 +260,13 @@ class OffAxisFields:
     def _strains(self, at: LocatedPoints, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Displacement (2, 3, n) and strain (2, 6, n): of all harmonics, tapered in the strain, and of the
         last third."""
-        u, strain = np.zeros((2, 3, theta.size)), np.zeros((2, 6, theta.size))
-        for field in self.fields:
-            displacement, found = field.amplitudes(at)
-            cos, sin = np.cos(field.harmonic * theta), np.sin(field.harmonic * theta)
-            displacement[[0, 2]] *= cos
-            displacement[1] *= sin
-            found[:4] *= cos
-            found[4:] *= sin
-            share = field.harmonic / self.compliance.last
-            u[0] += displacement
-            strain[0] += _taper(share) * found
-            if share > 2 / 3:
-                u[1] += displacement
-                strain[1] += found
-        return u, strain
+        u, strain = map(np.array, zip(*(field.amplitudes(at) for field in self.fields), strict=True))
+        m = np.array([field.harmonic for field in self.fields])
+        waves = np.stack([np.cos(np.outer(m, theta)), np.sin(np.outer(m, theta))], axis=1)
+        late = m > 2 / 3 * self.compliance.last
+        u = np.tensordot([late | True, late], u * waves[:, [0, 1, 0]], 1)
+        tapered = _taper(m / self.compliance.last), late
+        return u, np.tensordot(tapered, strain * waves[:, [0, 0, 0, 0, 1, 1]], 1)
 
     @cached_property
     def _series(self) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -295,9 +287,9 @@ class OffAxisFields:
         return found
 
 
-def _taper(share: float) -> float:
-    """Weight of a harmonic over the last one: the sum of a root's then oscillates less next to its end."""
-    return float(np.cos(np.pi / 2 * min(max(0.0, (share - FULL) / (1 - FULL)), 1.0)) ** 2)
+def _taper(share: np.ndarray) -> np.ndarray:
+    """Weights of harmonics over the last one: the sum of a root's then oscillates less next to its end."""
+    return np.asarray(np.cos(np.pi / 2 * np.clip((share - FULL) / (1 - FULL), 0, 1)) ** 2)
 
 
 def _powers(away: np.ndarray, halves: int) -> np.ndarray:
