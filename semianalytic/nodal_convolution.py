@@ -155,7 +155,7 @@ def influence_table(influence: Influence, m: Array, n: Array, odd_in_y: Sequence
         influence(a.ravel(), b.ravel()).reshape(-1, *a.shape)
         for a, b in ((mm[i : i + rows], nn[i : i + rows]) for i in range(0, m.size, rows))
     ]
-    table = np.concatenate(blocks, axis=1)[:, :, where]
+    table: Array = np.take(np.concatenate(blocks, axis=1), where, axis=2)
     for component in odd_in_y:
         table[component] *= np.where(n < 0, -1.0, 1.0)
     return table

@@ -248,11 +248,11 @@ class Solution:
     @cached_property
     def _refinement(self) -> Array:
         """Error of the pressure of patches alone at the nodes [Pa] by their size."""
-        first, second, third = (level.pressure(*np.ix_(self.nodes, self.nodes)) for level in self._levels)
-        difference = np.maximum(safety(self._refined) * np.abs(first - second), np.abs(second - third) / 6)
+        second, third = (level.pressure(*np.ix_(self.nodes, self.nodes)) for level in self._levels[1:])
+        last, before = np.abs(self.patch_pressure - second), np.abs(second - third)
         reach = 2 * int(np.ceil(2 * self._refined)) + 1
-        widened: Array = maximum_filter(difference, size=reach, mode="nearest")
-        return widened
+        difference = np.maximum(safety(self._refined) * last, before / 6)
+        return np.asarray(maximum_filter(difference, size=reach, mode="nearest"))
 
     def _rim(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Error [Pa] that a staircase makes of an edge: the highest pressure beside it, felt over a patch."""

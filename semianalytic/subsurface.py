@@ -20,6 +20,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import PPoly
 
 from semianalytic.inputs import Body
 from semianalytic.point_force import (
@@ -166,15 +167,13 @@ def _at_depths(rings: Rings, foot: NDArray[np.intp], z: Array, field: "PointFiel
 class PointField:
     """Field of a normal force 1 with a tangential force f in one layer, at depths it is made for.
 
-    groups : radial functions of the layers at any depth between those of each: (least depth, nodes, tables).
-    between : whether a group is interpolated between its depths.
+    groups : of the layers: (least depth, whether they are interpolated between the depths, these, tables).
     image : depth [m] from which the fields vary in proportion to the distance.
     """
 
     layer: int
     response: Response
-    groups: list[tuple[float, Array, list[PointForce]]]
-    between: list[bool]
+    groups: list[tuple[float, bool, Array, list[PointForce]]]
     image: float
 
     @classmethod
@@ -185,23 +184,22 @@ class PointField:
         """
         body = response.body
         if not body.coatings:
-            return cls(layer, response, [], [], 0.0)
+            return cls(layer, response, [], 0.0)
         image = 2 * body.thickness[0] if layer == 0 else 0.0
         reach = np.abs(image - z)
         # counted from the least, so that a few depths beside each other share a scale and its error
         least = reach.min(initial=np.inf)
         octave = np.floor(np.log2(reach / least) + 1e-9)
-        groups, between = [], []
+        groups = []
         for power in dict.fromkeys(octave):
             here = octave == power
             depths = np.unique(z[here])
-            between.append(depths.size > DEPTHS)
-            if between[-1]:
+            if between := depths.size > DEPTHS:
                 nodes = chebyshev(reach[here].min(), reach[here].max(), True)
                 depths = np.abs(image - nodes)
             tables = response.below(depths, layer, least * 2.0**power, excess=layer == 0)
-            groups.append((float(z[here][0]), depths, tables))
-        return cls(layer, response, groups, between, image)
+            groups.append((float(z[here][0]), between, depths, tables))
+        return cls(layer, response, groups, image)
 
     def __call__(self, x: Array, y: Array, z: float) -> Array:
         """Components at offsets (x, y) [m] from the force; (components,) + shape of ``x``."""
@@ -217,22 +215,24 @@ class PointField:
         return closed + self._of_layers(rho, z) if self.groups else np.asarray(closed)
 
     def _of_layers(self, rho: Array, z: Array) -> Array:
-        lows = [low for low, *_ in self.groups]
-        which = np.searchsorted(lows, z, side="right") - 1
-        *_, (first, *_) = self.groups[0]
-        out = np.zeros((first.radial.c.shape[-1], rho.size))
-        for k, (_, depths, tables) in enumerate(self.groups):
+        which = np.searchsorted([low for low, *_ in self.groups], z, side="right") - 1
+        out = np.zeros((self.groups[0][-1][0].radial.c.shape[-1], rho.size))
+        for k in np.unique(which):
+            _, between, depths, tables = self.groups[k]
             here = np.flatnonzero(which == k)
-            s = np.arcsinh(rho[here] / tables[0].scale)
-            if self.between[k]:
-                nodes, reach = (np.log(np.abs(self.image - one)) for one in (depths, z[here]))
-                for w, table in zip(weights(nodes, reach), tables, strict=True):
-                    out[:, here] += w * table.radial(s).T
+            s, at = np.arcsinh(rho[here] / tables[0].scale), z[here]
+            at = at[:1] if np.ptp(at) == 0 else at
+            if between:
+                share = weights(*(np.log(np.abs(self.image - one)) for one in (depths, at)))
             else:
-                nearest = np.clip(np.searchsorted(depths, z[here] * (1 - 1e-12)), 0, len(tables) - 1)
-                for i, table in enumerate(tables):
-                    at = nearest == i
-                    out[:, here[at]] = table.radial(s[at]).T
+                share = np.searchsorted(depths[:-1], at * (1 - 1e-12)) == np.arange(len(tables))[:, None]
+            if at.size == 1:  # one table
+                c = np.tensordot(share[:, 0], [table.radial.c for table in tables], 1)
+                out[:, here] = PPoly(c, tables[0].radial.x)(s).T
+            else:
+                for w, table in zip(share, tables, strict=True):
+                    on = np.flatnonzero(w)
+                    out[:, here[on]] += w[on] * table.radial(s[on]).T
         return out
 
 
