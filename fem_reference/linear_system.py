@@ -110,7 +110,7 @@ class ConstrainedFactor:
 
     @classmethod
     def of(cls, K: sp.csc_matrix, fixed: np.ndarray) -> "ConstrainedFactor":
-        A, _, _, free = condense(K, np.zeros(K.shape[0]), D=np.unique(fixed))
+        A, _, free = condense(K, D=np.unique(fixed))
         return cls(K, factorised(A.tocsc()), free)
 
     def rows(self, at: np.ndarray) -> np.ndarray:
