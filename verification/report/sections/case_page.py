@@ -34,10 +34,10 @@ from verification.report.tables.line_csv import line_csv
 from verification.running.case_result import CaseResult
 
 
-def contents(material: Material, result: CaseResult) -> dict[str, Any]:
-    """What the template of a case shows."""
+def contents(material: Material, result: CaseResult, anchor: str) -> dict[str, Any]:
+    """What the template of a case shows under its ``anchor``."""
     common = {
-        "anchor": material.anchors[result],
+        "anchor": anchor,
         "result": result,
         "outcome": OUTCOMES[result.outcome],
         "summary": summary(result),
@@ -55,7 +55,7 @@ def contents(material: Material, result: CaseResult) -> dict[str, Any]:
     broken = [one for one in result.invariants if one.outcome is not Outcome.AGREES]
     return common | {
         "contact": contact_tables(result),
-        "strips": case_strips(result, material.anchors[result]),
+        "strips": case_strips(result, anchor),
         "sketch": sketch(result),
         "pictures": pictures(result, material.planes.get(result.name)),
         "figures": case_figures(result),

@@ -18,7 +18,6 @@ from verification.problem.array_types import Array
 from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.report.figures.line_panels import FIRST, swatch
-from verification.report.report_material import Material
 from verification.report.tables.case_lookup import (
     layers,
     reference_source,
@@ -39,14 +38,14 @@ Members = dict[float, CaseResult]  # by E1/E2, ascending
 Curves = dict[float, tuple[Array, Array]]  # by E1/E2
 
 
-def section(material: Material) -> Section | None:
-    """A gallery for every family among the cases of the run; None where there is none.
+def section(results: Sequence[CaseResult]) -> Section | None:
+    """A gallery for every family among the ``results``; None where there is none.
 
     A family: one coating, one thickness over a_h, one nu throughout, one friction, and three or more E1/E2,
     the uncoated solid as E1/E2 = 1.
     """
     parts = []
-    for (thickness, friction, nu), members in sorted(_families(material.contacts).items()):
+    for (thickness, friction, nu), members in sorted(_families(results).items()):
         if len(members) < SMALLEST:
             continue
         sliding = f"sliding with f = {friction:g}" if friction else "frictionless"
