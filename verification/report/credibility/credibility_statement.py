@@ -43,7 +43,7 @@ MOST = 30
 
 
 def _range_table(results: Sequence[CaseResult]) -> Table:
-    solids = [(layers(result), scale(result, "a_h"), result.problem) for result in results]
+    solids = [(layers(result.problem), scale(result.problem, "a_h"), result.problem) for result in results]
     found: dict[str, tuple[list[float], Sequence[float]]] = {
         "E of a coating over E of the substrate": (
             [E / layers[-1][0] for layers, _, _ in solids for E, _, _ in layers[:-1]],
