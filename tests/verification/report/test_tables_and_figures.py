@@ -18,8 +18,8 @@ from verification.page.symbol_text import drawn, typeset, unicode
 from verification.report.figures import line_panels
 from verification.report.figures.line_panels import case_figures
 from verification.report.figures.problem_sketch import sketch
-from verification.report.sections.accuracy_section import accuracies, coverage_table
-from verification.report.tables.case_lookup import contact_radius, difference, judged, reference_source
+from verification.report.sections.accuracy_section import accuracies, coverage_table, judged
+from verification.report.tables.case_lookup import contact_radius, difference, reference_source
 from verification.report.tables.case_tables import (
     MOST_FAILING,
     comparison_table,

@@ -5,18 +5,19 @@ from dataclasses import dataclass
 from functools import lru_cache, partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from verification.judging.verdict import Claim
 from verification.page.number_text import plain, scientific
 from verification.page.page_parts import Cell, Part, Section, Table, number, row, tally, words
 from verification.page.source_labels import source_label, symbol_of
-from verification.problem.line_profile import ON_BALL, Profile
+from verification.problem.line_profile import ON_BALL, Profile, coordinate_of
 from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.report.report_words import stated
 from verification.report.tables.case_lookup import (
     case_cell,
+    contact_radius,
     difference,
-    judged,
     reference_source,
     sources_with_profiles,
 )
@@ -104,6 +105,14 @@ def _accuracy(result: CaseResult, claim: Claim, mine: Profile, exact: str) -> Ac
         smallest = float(np.min(np.where(np.isfinite(uncertainty), ratio, 0.0)[here]))
         estimate = float(uncertainty[worst])
     return Accuracy(mine.source, claim.quantity, claim.line, float(error[worst]), estimate, smallest)
+
+
+def judged(result: CaseResult, claim: Claim, position: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Marks the points of ``position`` judged by ``claim``: those outside its zone around the edge."""
+    a = contact_radius(result)
+    if not claim.edge or a is None or coordinate_of(claim.line) == "z":
+        return np.ones(position.shape, dtype=bool)
+    return np.abs(np.abs(position) - a) >= claim.edge * a
 
 
 def _overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], source: str) -> Table:

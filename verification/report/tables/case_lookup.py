@@ -1,4 +1,4 @@
-"""Lookup in a case result: scales, references, judged points."""
+"""Lookup in a case result: scales, references, differences."""
 
 import re
 from collections.abc import Mapping
@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.judging.verdict import Claim, Comparison
+from verification.judging.verdict import Comparison
 from verification.page.page_parts import Cell
 from verification.problem.coated_contact import BALL, FLAT
-from verification.problem.line_profile import Profile, coordinate_of
+from verification.problem.line_profile import Profile
 from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import CaseResult
 from verification.sources.source_registry import METHODS, REFERENCES
@@ -78,14 +78,6 @@ def contact_radius(result: CaseResult) -> float | None:
         if found is not None and np.isfinite(found[0]):
             return found[0]
     return None
-
-
-def judged(result: CaseResult, claim: Claim, position: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Marks the points of ``position`` judged by ``claim``: those outside its zone around the edge."""
-    a = contact_radius(result)
-    if not claim.edge or a is None or coordinate_of(claim.line) == "z":
-        return np.ones(position.shape, dtype=bool)
-    return np.abs(np.abs(position) - a) >= claim.edge * a
 
 
 def difference(
