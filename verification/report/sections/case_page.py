@@ -37,7 +37,8 @@ from verification.running.case_result import CaseResult
 def contents(material: Material, result: CaseResult, anchor: str) -> dict[str, Any]:
     """What the template of a case shows under its ``anchor``."""
     problem, verdicts, file = result.problem, result.verdicts, slug(result.name)
-    a_h, p_h = (float(scale(problem, name)) for name in ("a_h", "p_h"))
+    a_h, p_h = scale(problem, "a_h"), scale(problem, "p_h")
+    radius, ball = contact_radius(result), layers(problem, BALL)
     common = {
         "anchor": anchor,
         "result": result,
@@ -46,7 +47,7 @@ def contents(material: Material, result: CaseResult, anchor: str) -> dict[str, A
         "command": rerun_command(result.name, material.info.command),
         "facts": facts(problem),
         "failures": [(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
-        "layers": [layer_table(problem), *([layer_table(problem, BALL)] if layers(problem, BALL) else [])],
+        "layers": [layer_table(problem), *([layer_table(problem, BALL)] if ball else [])],
         "failing": failing_table(verdicts, a_h),
         "budget": budget_table(result),
         "diagnostics": diagnostics_table(result.sources),
@@ -59,7 +60,7 @@ def contents(material: Material, result: CaseResult, anchor: str) -> dict[str, A
         "file": file,
         "contact": contact_tables(result),
         "strips": case_strips(items_of(verdicts), anchor),
-        "sketch": sketch(problem, contact_radius(result)),
+        "sketch": sketch(problem, radius),
         "pictures": pictures(material.planes.get(result.name), a_h, p_h),
         "figures": case_figures(result),
         "beyond": material.evidence.beyond.get(result.name, ()),

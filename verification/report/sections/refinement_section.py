@@ -2,13 +2,7 @@
 
 from collections.abc import Sequence
 
-from verification.credibility.accuracy_study import (
-    CORRECTED,
-    PLAIN,
-    PROBLEM,
-    STAIRCASE,
-    AccuracyStudy,
-)
+from verification.credibility.accuracy_study import CORRECTED, PLAIN, PROBLEM, STAIRCASE, AccuracyStudy
 from verification.credibility.refinement_studies import QUANTITIES, Refinement
 from verification.judging.invariants import Invariant
 from verification.judging.invariants.influence_error import ConversionError
