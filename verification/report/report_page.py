@@ -55,28 +55,27 @@ def _dated(section: Section | None, *, older: bool) -> Section | None:
 def _sections(material: Material) -> list[tuple[str, list[Section]]]:
     """Pages about the run as a whole in their order, under the headings of the contents."""
     contacts, published, anchors = material.contacts, material.published, material.anchors
-    evidence, study = material.evidence, material.evidence.accuracy
-    faults, older = evidence.faults, evidence.older
+    found, study, faults = material.evidence, material.evidence.accuracy, material.evidence.faults
     coverage = accuracy_section.coverage_table(contacts)
-    results = [
+    results = (
         overview_section.section(material),
         published_section.section(published, anchors),
         family_section.section(contacts),
-    ]
-    found = [
+    )
+    evidence = (
         credibility_statement.section(material, coverage),
-        _dated(model_section.section(evidence.maps), older="maps" in older),
+        _dated(model_section.section(found.maps), older="maps" in found.older),
         accuracy_section.section(contacts, anchors, coverage),
         invariants_section.section(contacts, anchors),
         refinement_section.semianalytic_section(study),
         refinement_section.finite_element_section(study),
-        _dated(detection_sections.faults_section(faults), older="faults" in older) if faults else None,
-        detection_sections.self_tests_section(evidence.self_tests),
-        baseline_section.section(evidence.baseline, anchors),
+        _dated(detection_sections.faults_section(faults), older="faults" in found.older) if faults else None,
+        detection_sections.self_tests_section(found.self_tests),
+        baseline_section.section(found.baseline, anchors),
         guests_section.section(),
-    ]
-    shown = (("Results", list(filter(None, results))), ("Evidence", list(filter(None, found))))
-    return [group for group in shown if group[1]]
+    )
+    groups = (("Results", results), ("Evidence", evidence))
+    return [(group, shown) for group, pages in groups if (shown := [page for page in pages if page])]
 
 
 def render(material: Material) -> str:
