@@ -5,9 +5,7 @@ address behind "#". Without the script, and on paper, all pages follow one after
 """
 
 import json
-from collections.abc import Callable
 from dataclasses import replace
-from itertools import groupby
 from pathlib import Path
 
 import numpy as np
@@ -44,31 +42,9 @@ MOST_UNPACKED = 60
 HTML = Path(__file__).parent / "html"
 
 
-# Pages about the run as a whole in their order, under the heading of the contents; None is left out.
-SECTIONS: tuple[tuple[str, Callable[[Material], Section | None]], ...] = (
-    ("Results", overview_section.section),
-    ("Results", published_section.section),
-    ("Results", family_section.section),
-    ("Evidence", credibility_statement.section),
-    ("Evidence", model_section.section),
-    ("Evidence", accuracy_section.section),
-    ("Evidence", invariants_section.section),
-    ("Evidence", refinement_section.semianalytic_section),
-    ("Evidence", refinement_section.finite_element_section),
-    ("Evidence", detection_sections.faults_of),
-    ("Evidence", detection_sections.self_tests_of),
-    ("Evidence", lambda material: baseline_section.section(material.evidence.baseline, material.anchors)),
-    ("Evidence", lambda _: guests_section.section()),
-)
-
-
-# The page of each record that may be older than the code it judges.
-RECORDS = {"faults": "faults", "model": "maps"}
-
-
-def _dated(material: Material, section: Section | None) -> Section | None:
-    """``section``, where its record is older than the code with a sentence that says so."""
-    if section is None or RECORDS.get(section.anchor) not in material.evidence.older:
+def _dated(section: Section | None, *, older: bool) -> Section | None:
+    """``section``, where its record is ``older`` than the code with a sentence that says so."""
+    if section is None or not older:
         return section
     text = (
         "This record is older than the code that it judges: it was made before the last change of that code."
@@ -76,23 +52,43 @@ def _dated(material: Material, section: Section | None) -> Section | None:
     return replace(section, parts=[Part(text), *section.parts])
 
 
+def _sections(material: Material) -> list[tuple[str, list[Section]]]:
+    """Pages about the run as a whole in their order, under the headings of the contents."""
+    contacts, published, anchors = material.contacts, material.published, material.anchors
+    found, study, faults = material.evidence, material.evidence.accuracy, material.evidence.faults
+    coverage = accuracy_section.coverage_table(contacts)
+    results = (
+        overview_section.section(material),
+        published_section.section(published, anchors),
+        family_section.section(contacts),
+    )
+    evidence = (
+        credibility_statement.section(material, coverage),
+        _dated(model_section.section(found.maps), older="maps" in found.older),
+        accuracy_section.section(contacts, anchors, coverage),
+        invariants_section.section(contacts, anchors),
+        refinement_section.semianalytic_section(study),
+        refinement_section.finite_element_section(study),
+        _dated(detection_sections.faults_section(faults), older="faults" in found.older) if faults else None,
+        detection_sections.self_tests_section(found.self_tests),
+        baseline_section.section(found.baseline, anchors),
+        guests_section.section(),
+    )
+    groups = (("Results", results), ("Evidence", evidence))
+    return [(group, shown) for group, pages in groups if (shown := [page for page in pages if page])]
+
+
 def render(material: Material) -> str:
     """The whole page as text. Every string of a result is escaped: a title "<script>" stays text."""
     # Results may hold numbers that overflow or are not finite; the page shows them as they are.
     with np.errstate(all="ignore"):
-        cases = [contents(material, result) for result in material.results]
-        made = [(group, _dated(material, make(material))) for group, make in SECTIONS]
-        sections = [pair for pair in made if pair[1] is not None]
-        groups = [
-            (group, [section for _, section in some])
-            for group, some in groupby(sections, key=lambda pair: pair[0])
-        ]
+        cases = [contents(material, result, anchor) for result, anchor in material.anchors.items()]
         return rendered(
             "page.html",
             HTML,
+            groups=_sections(material),
             **first_page.contents(material),
             info=material.info,
-            groups=groups,
             cases=cases,
             packed=len(cases) > MOST_UNPACKED,
             data=data(material),

@@ -26,16 +26,16 @@ def test_every_quantity_has_a_figure_with_every_curve():
 
 
 def test_what_failed_is_said_in_its_section():
-    broken = material(study("fem_reference, coated, order 3, default: no mesh", "semianalytic: no grid fits"))
+    broken = study("fem_reference, coated, order 3, default: no mesh", "semianalytic: no grid fits")
     assert semianalytic_section(broken).failures[0] == "semianalytic: no grid fits"
     assert finite_element_section(broken).failures == ("fem_reference, coated, order 3, default: no mesh",)
 
 
 def test_study_that_died_is_its_reason_alone():
-    died = material(failed("its process was killed", 3.0))
+    died = failed("its process was killed", 3.0)
     assert semianalytic_section(died).failures == ("its process was killed",)
     assert finite_element_section(died) is None
-    assert "its process was killed" in Document(render(died)).text("p")
+    assert "its process was killed" in Document(render(material(died))).text("p")
 
 
 def test_part_that_is_missing_leaves_the_others():

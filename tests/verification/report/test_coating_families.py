@@ -1,14 +1,9 @@
 """The plots of one coating at several moduli: which cases make a family, and what is drawn of it."""
 
 import pytest
-from synthetic_results import INFO, contact, result_of
+from synthetic_results import contact, result_of
 
-from verification.report.report_material import Material
-from verification.report.sections.family_section import section
-
-
-def family_section(results):
-    return section(Material(results, INFO))
+from verification.report.sections.family_section import section as family_section
 
 
 def member(ratio, thickness=1.0, friction=0.0, name=None):

@@ -18,6 +18,7 @@ from verification.report.credibility.detection_sections import faults_section
 from verification.report.report_material import Evidence, Material, gather
 from verification.report.report_page import render
 from verification.report.sections import first_page
+from verification.report.sections.accuracy_section import coverage_table
 from verification.running.case_result import CaseResult
 from verification.running.provenance import changed_since
 from verification.sources.source_record import Independence
@@ -37,7 +38,8 @@ def evidence(tmp_path_factory) -> Evidence:
 
 
 def section(evidence: Evidence, results: list[CaseResult] = RESULTS, **more) -> Section:
-    found = credibility_statement.section(Material(results, INFO, replace(evidence, **more)))
+    material = Material(results, INFO, replace(evidence, **more))
+    found = credibility_statement.section(material, coverage_table(material.contacts))
     assert found is not None
     return found
 

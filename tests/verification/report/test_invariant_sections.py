@@ -2,11 +2,10 @@
 
 from dataclasses import replace
 
-from synthetic_results import INFO, STEEL, contact, result_of
+from synthetic_results import STEEL, contact, result_of
 
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
-from verification.report.report_material import Material
 from verification.report.sections.case_page import dominating_parameter
 from verification.report.sections.invariants_section import invariant_table, section
 
@@ -43,13 +42,13 @@ def test_table_begins_with_what_is_broken_then_with_the_closest_to_its_bound():
 
 
 def test_section_gathers_the_layers_of_a_law_over_all_cases():
-    found = section(Material([SOUND, SLIPPED], INFO))
+    found = section([SOUND, SLIPPED], {SOUND: "case-sound", SLIPPED: "case-slipped"})
     assert "4 of 6" in found.parts[0].text
     rows = {row.head.text: row for row in found.parts[0].tables[0].rows}
     assert set(rows) == {"load balance", "equilibrium", "sphere"}
     held = next(cell for cell in rows["equilibrium"].cells if cell.text)
-    assert (held.text, held.href) == ("2 of 3", "#case-stiff-coating--2-invariants")
-    assert section(Material([replace(SOUND, invariants=())], INFO)) is None
+    assert (held.text, held.href) == ("2 of 3", "#case-slipped-invariants")
+    assert section([replace(SOUND, invariants=())], {}) is None
 
 
 def test_dominating_parameter_is_the_largest_share_of_the_less_certain_side():

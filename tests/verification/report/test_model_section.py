@@ -24,24 +24,20 @@ def maps():
     return read_maps(RECORDS)
 
 
-def section_of(maps):
-    return section(Material([RESULT], INFO, Evidence(maps=maps)))
-
-
 def test_section_has_every_assumption_of_the_record(maps):
     other = replace(maps.maps[0], assumption="other", title="yet another assumption")
-    shown = section_of(with_map(maps, other))
+    shown = section(with_map(maps, other))
     heads = [line.head.text for line in shown.parts[0].tables[0].rows]
     for one in (*maps.maps, other):
         assert sum(head.startswith(f"{one.title}, ") for head in heads) == 1
         assert [part.title.casefold() for part in shown.parts].count(one.title.casefold()) == 1
         assert one.title in shown.parts[0].text
-    fewer = section_of(type(maps)(maps.maps[:1]))
+    fewer = section(type(maps)(maps.maps[:1]))
     assert maps.maps[1].title in fewer.parts[0].text
 
 
 def test_csv_has_the_numbers_of_the_record(maps):
-    for one, part in zip(maps.maps, section_of(maps).parts[1:], strict=True):
+    for one, part in zip(maps.maps, section(maps).parts[1:], strict=True):
         heads, *rows = csv.reader(io.StringIO(part.gallery.csv))
         values = np.array(rows, dtype=float)[:, len(one.axes) :]
         both = np.stack([one.change, one.uncertainty], axis=1).reshape(2 * len(one.quantities), -1)
@@ -68,7 +64,7 @@ def test_map_with_holes_is_drawn(maps):
     change = maps.maps[0].change.copy()
     change[:, 0, 0, ...] = np.nan
     change[1] = np.nan
-    holed = section_of(type(maps)((replace(maps.maps[0], change=change),)))
+    holed = section(type(maps)((replace(maps.maps[0], change=change),)))
     assert len(holed.parts[1].gallery.panels) == 4
 
 

@@ -21,6 +21,7 @@ from verification.sources.references.hertz import Hertz
 
 HERTZ = Hertz(10e-3, 20.0, *STEEL)
 RESULT = result_of(contact(), name="bare", points=31)
+SCALES = RESULT.problem["a_h"], RESULT.problem["p_h"]
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +42,7 @@ def test_a_raster_keeps_the_values_and_the_jump():
 
 
 def test_each_stress_has_its_difference_below(plane):
-    found = pictures(RESULT, plane)
+    found = pictures(plane, *SCALES)
     assert len(found["panels"]) == 6
     assert "1.0e-5" in found["panels"][4].note
     assert 'class="s-cap"' in found["panels"][0].figure
@@ -61,7 +62,7 @@ def test_a_thin_layer_is_drawn_thick_enough_to_be_seen():
 
 
 def test_the_numbers_behind_are_those_of_the_plane(plane):
-    found = pictures(RESULT, plane)
+    found = pictures(plane, *SCALES)
     rows = found["csv"].splitlines()
     heads = rows[0].split(",")
     assert heads[:3] == ["layer", "x [m]", "z [m]"]
@@ -86,9 +87,9 @@ def test_a_field_that_is_not_finite_still_gives_a_page(plane, bad):
 def test_a_method_without_a_picture_is_said_and_no_plane_is_no_picture(plane):
     one = {"fem_reference": plane.stress["fem_reference"]}
     alone = replace(plane, stress=one, failures={"semianalytic": "no <b>"})
-    found = pictures(RESULT, alone)
+    found = pictures(alone, *SCALES)
     assert len(found["panels"]) == 3
     assert plane_difference(alone, 1.0) is None
     assert "No picture by semi-analytical" in render(Material([RESULT], INFO, planes={"bare": alone}))
-    assert pictures(RESULT, None) is None
-    assert pictures(RESULT, Plane(np.zeros(0), (), 0.0, {}, {})) is None
+    assert pictures(None, *SCALES) is None
+    assert pictures(Plane(np.zeros(0), (), 0.0, {}, {}), *SCALES) is None

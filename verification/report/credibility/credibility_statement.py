@@ -35,7 +35,7 @@ from verification.page.source_labels import pair_label, source_label
 from verification.page.svg_loglog import draw_histogram
 from verification.report.report_material import Evidence, Material
 from verification.report.report_words import stated
-from verification.report.sections.accuracy_section import accuracies, coverage_table
+from verification.report.sections.accuracy_section import accuracies
 from verification.report.tables.case_lookup import layers, scale
 from verification.running.case_result import CaseResult
 
@@ -43,7 +43,7 @@ MOST = 30
 
 
 def _range_table(results: Sequence[CaseResult]) -> Table:
-    solids = [(layers(result), scale(result, "a_h"), result.problem) for result in results]
+    solids = [(layers(result.problem), scale(result.problem, "a_h"), result.problem) for result in results]
     found: dict[str, tuple[list[float], Sequence[float]]] = {
         "E of a coating over E of the substrate": (
             [E / layers[-1][0] for layers, _, _ in solids for E, _, _ in layers[:-1]],
@@ -149,8 +149,11 @@ def _range(found: Sequence[float]) -> str:
 NO_RECORD = "Not measured: there is no record of {}; make one with: {} --record"
 
 
-def section(material: Material) -> Section | None:
-    """Eight steps from the intended use to the limits of the claim; None where no evidence was collected."""
+def section(material: Material, coverage: Table) -> Section | None:
+    """Eight steps from the intended use to the limits of the claim; None where no evidence was collected.
+
+    coverage : as ``coverage_table``.
+    """
     results, evidence = material.results, material.evidence
     if evidence == Evidence():
         return None
@@ -161,7 +164,7 @@ def section(material: Material) -> Section | None:
         Part(stated("code"), [_design_table(evidence.orders)], title="2. Code verification"),
         Part(
             stated("solution", found=_bracketed(contacts)),
-            [coverage_table(contacts)],
+            [coverage],
             title="3. Solution verification",
         ),
         Part(

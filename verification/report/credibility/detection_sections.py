@@ -12,12 +12,12 @@ from verification.credibility.faults.first_notice import (
     of_method,
     unused,
 )
+from verification.credibility.self_tests import SelfTest
 from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record
 from verification.evidence.fault_record import Row as Fault
 from verification.page.number_text import plain, scientific, seconds
 from verification.page.page_parts import Cell, Part, Section, Table, Value, row, table_of, words
 from verification.page.source_labels import source_label
-from verification.report.report_material import Material
 from verification.report.report_words import stated
 
 # Mark, class and words of each outcome of a planted fault.
@@ -55,12 +55,6 @@ def faults_message(record: Record) -> str:
             f"; of {len(record.controls)} negative controls {len(record.alarms) or 'none'} raised an alarm"
         )
     return text + "."
-
-
-def faults_of(material: Material) -> Section | None:
-    """The planted faults on record; None without a record."""
-    record = material.evidence.faults
-    return None if record is None else faults_section(record)
 
 
 def faults_section(record: Record) -> Section:
@@ -195,9 +189,8 @@ def _seen_cell(fault: Fault, column: str) -> Cell:
     return Cell(f"{text}/{seen.made}", seen.disagree + seen.inconclusive, f"verdict {css}", seen.message)
 
 
-def self_tests_of(material: Material) -> Section | None:
+def self_tests_section(tests: Sequence[SelfTest]) -> Section | None:
     """Each self-test with its requirement and its outcome; None where none was made."""
-    tests = material.evidence.self_tests
     if not tests:
         return None
     passed, failed = Cell("✓", 1.0, "verdict agrees"), Cell("✗", 0.0, "verdict disagrees")

@@ -9,12 +9,11 @@ from markupsafe import Markup
 
 from verification.credibility.model_error import ASSUMPTIONS
 from verification.credibility.model_error import WORDS as NAMES
-from verification.evidence.assumption_maps import WORDS, AssumptionMap
+from verification.evidence.assumption_maps import WORDS, AssumptionMap, AssumptionMaps
 from verification.page.number_text import plain
 from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row, written
 from verification.page.svg_plot import Axes, drawing
 from verification.problem.array_types import Array
-from verification.report.report_material import Material
 from verification.sources.assumptions.contact_change import SCALARS
 
 LEVELS = (0.001, 0.01, 0.05)
@@ -25,9 +24,8 @@ THICKNESSES = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2)  # ticks
 USUAL = {"nu": 0.3}  # coordinate of a panel, where the map has it
 
 
-def section(material: Material) -> Section | None:
+def section(record: AssumptionMaps | None) -> Section | None:
     """As ``parts``; None without a record."""
-    record = material.evidence.maps
     if record is None or not record.maps:
         return None
     return Section("model", "Where the model ends", parts(record.maps))

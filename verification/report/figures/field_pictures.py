@@ -28,9 +28,6 @@ from verification.page.symbol_text import drawn, unicode
 from verification.problem.array_types import Array
 from verification.problem.quantity import IN_PLANE, von_mises
 from verification.report.report_words import stated
-from verification.report.tables.case_lookup import scale as scale_of
-from verification.report.tables.case_lookup import slug
-from verification.running.case_result import CaseResult
 from verification.sampling.stress_plane import Plane
 from verification.sources.source_registry import METHODS
 
@@ -241,12 +238,11 @@ LOWEST, HIGHEST = -8.0, -3.0  # exponents of the difference over p_h; the same i
 EVERY = 3  # of the columns in the table of numbers
 
 
-def pictures(result: CaseResult, plane: Plane | None) -> dict[str, Any] | None:
+def pictures(plane: Plane | None, a_h: float, p_h: float) -> dict[str, Any] | None:
     """Von Mises stress, sigma_xx and sigma_xz side by side, below them the differences of both methods.
 
     With caption and the numbers as CSV; None where there is nothing to draw.
     """
-    a_h, p_h = float(scale_of(result, "a_h")), float(scale_of(result, "p_h"))
     if plane is None or not plane.stress or not a_h > 0 or not p_h > 0:
         return None
     sources = [name for name in METHODS if name in plane.stress]
@@ -281,7 +277,6 @@ def pictures(result: CaseResult, plane: Plane | None) -> dict[str, Any] | None:
         "panels": [*fields, *gaps],
         "caption": stated("pictures", stretched=frame.stretched, both=len(sources) == 2),
         "csv": plane_csv(plane),
-        "file": f"{slug(result.name)}-plane.csv",
         "failures": [(source_label(name), message) for name, message in plane.failures.items()],
     }
 

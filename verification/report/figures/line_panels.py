@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup, escape
 
-from verification.judging.verdict import Claim, Outcome
+from verification.judging.verdict import Outcome
 from verification.page.number_text import scientific
 from verification.page.page_parts import Panel
 from verification.page.source_labels import pair_label, pair_style, source_label, source_style, symbol_of
@@ -86,10 +86,10 @@ def _pairs(result: CaseResult, line: str, quantity: str) -> list[tuple[str, str]
 
 
 def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
-    a_h = scale(result, "a_h")
     unit = QUANTITIES[quantity].scale if quantity in QUANTITIES else "p_h"
+    a_h, size = scale(result.problem, "a_h"), scale(result.problem, unit)
     curves = [
-        Curve(profile.position / a_h, profile.value / scale(result, unit), source_style(profile.source))
+        Curve(profile.position / a_h, profile.value / size, source_style(profile.source))
         for profile in result.profiles
         if (profile.quantity, profile.line) == (quantity, line)
     ]
@@ -107,14 +107,14 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
         vague = verdict.outcome is Outcome.INCONCLUSIVE
         differences.append(Difference(first.position / a_h, gap, uncertainty, pair_style(pair), worst, vague))
     cap = min((claim.cap for claim, _ in claims), default=None)
-    zones = _unjudged(result, [claim for claim, _ in claims], curves)
+    edge = max((claim.edge for claim, _ in claims), default=0.0)
     figure = draw(
         curves,
         differences,
         label=f"{symbol_of(quantity)} on {line} by every source, with differences",
         coordinate=f"{coordinate_of(line)} / a_h",
         cap=cap,
-        unjudged=zones,
+        unjudged=_unjudged(edge, contact_radius(result), a_h, curves),
         data=f'data-quantity="{escape(quantity)}" data-line="{escape(line)}"',
     )
     bad = [v for _, v in claims if v.outcome is not Outcome.AGREES]
@@ -125,9 +125,7 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
     return Panel(f"{symbol_of(quantity)} / {unit}, {line}", figure, note, "fails" if bad else "")
 
 
-def _unjudged(result: CaseResult, claims: list[Claim], curves: list[Curve]) -> list[tuple[float, float]]:
-    edge = max((claim.edge for claim in claims), default=0.0)
-    a, a_h = contact_radius(result), scale(result, "a_h")
+def _unjudged(edge: float, a: float | None, a_h: float, curves: list[Curve]) -> list[tuple[float, float]]:
     if not edge or a is None or not curves:
         return []
     inner, outer = a * (1 - edge) / a_h, a * (1 + edge) / a_h

@@ -1,15 +1,16 @@
 """Sketch of the layered solid under its sphere, to scale except the sphere."""
 
+from collections.abc import Mapping
 from math import isfinite, log, sqrt
 from pathlib import Path
+from typing import Any
 
 from markupsafe import Markup
 
 from verification.page.html_page import rendered
 from verification.page.number_text import engineering, plain
 from verification.problem.coated_contact import BALL
-from verification.report.tables.case_lookup import INDENTERS, contact_radius, layers, scale
-from verification.running.case_result import CaseResult
+from verification.report.tables.case_lookup import INDENTERS, layers, scale
 
 HTML = Path(__file__).parents[1] / "html"
 HEIGHT, BLOCK, SURFACE = 250.0, 216.0, 92.0  # of the drawing; width of the solid, its top; drawing units
@@ -17,13 +18,14 @@ THINNEST, STEP = 4.0, 44.0  # a layer at least, a label
 SHALLOWEST, DEEPEST = 1.6, 4.0  # over a_h
 
 
-def sketch(result: CaseResult) -> Markup:
+def sketch(problem: Mapping[str, Any], a: float | None) -> Markup:
     """The layers with depth and contact width on one scale; a layer too thin to see is drawn 4 units thick.
 
     The darker a layer, the stiffer. The sphere's radius is not to scale; its own layers are not drawn.
+    a : contact radius [m].
     """
-    a_h = float(scale(result, "a_h"))
-    found = [(E, nu, thickness / a_h) for E, nu, thickness in layers(result)]
+    a_h = float(scale(problem, "a_h"))
+    found = [(E, nu, thickness / a_h) for E, nu, thickness in layers(problem)]
     total = sum(thickness for _, _, thickness in found[:-1])
     if not found or not isfinite(total) or not 0 < a_h < float("inf"):
         return Markup("")
@@ -45,7 +47,6 @@ def sketch(result: CaseResult) -> Markup:
         labels.append((depth, at, [line for line in lines if line]))
         top, at = top + height, at + STEP
     stretched = any(float(thickness * unit) < THINNEST for _, _, thickness in found[:-1])
-    a = contact_radius(result)
     # A radius of a few contact radii keeps the arc readable at any real ratio a_h/R.
     radius = 3.2 * unit
     half = min(sqrt(max(radius**2 - (radius - SURFACE + 4) ** 2, 0.0)), BLOCK / 2)
@@ -58,17 +59,17 @@ def sketch(result: CaseResult) -> Markup:
         "half": half,
         "rise": radius - sqrt(radius**2 - half**2),
         "contact": None if a is None else min(a / a_h * unit, BLOCK / 2),
-        "ball": _ball(result),
+        "ball": _ball(problem),
         "bars": bars,
         "labels": labels,
     }
     return Markup(rendered("sketch.html", HTML, **content))
 
 
-def _ball(result: CaseResult) -> tuple[str, str]:
+def _ball(problem: Mapping[str, Any]) -> tuple[str, str]:
     """What the sphere or other indenter is, in two lines."""
-    found = layers(result, BALL)
-    if indenter := result.problem.get("indenter"):
+    found = layers(problem, BALL)
+    if indenter := problem.get("indenter"):
         return f"rigid {INDENTERS[indenter[0]]}, its", "radius not to scale"
     if not found:
         return "rigid sphere, its", "radius not to scale"

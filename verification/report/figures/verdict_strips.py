@@ -4,7 +4,7 @@ A strip holds the comparisons of a case, or of a line of it. Each has a lane of 
 then of U: the bars of a strip make a tinted area, and a dot outside that area disagrees.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import ceil, floor, isfinite, log10
 from typing import Any
@@ -16,7 +16,6 @@ from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.source_labels import OUTCOMES
 from verification.page.svg_plot import polyline
 from verification.page.symbol_text import drawn, unicode
-from verification.running.case_result import CaseResult
 
 WIDTH, HEIGHT = 560.0, 22.0
 INSET = 2.0  # of the lanes from the edges of a strip
@@ -44,9 +43,9 @@ class Item:
         return found if found is not None and isfinite(found) and found >= 0 else None
 
 
-def items_of(result: CaseResult) -> list[Item]:
+def items_of(compared: Iterable[tuple[Claim, Verdict]]) -> list[Item]:
     """The comparisons of a case."""
-    return [Item(claim, verdict) for claim, verdict in result.verdicts]
+    return [Item(claim, verdict) for claim, verdict in compared]
 
 
 @dataclass(frozen=True)
@@ -87,9 +86,8 @@ def worst(items: Sequence[Item]) -> Item | None:
     )
 
 
-def case_strips(result: CaseResult, anchor: str) -> dict[str, Any] | None:
+def case_strips(items: Sequence[Item], anchor: str) -> dict[str, Any] | None:
     """All comparisons of a case, a strip for each line."""
-    items = items_of(result)
     if not items:
         return None
     axis = axis_of(items)

@@ -1,23 +1,23 @@
 """Error of each method against the exact reference beside the uncertainty it states."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache, partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from verification.judging.verdict import Claim
 from verification.page.number_text import plain, scientific
 from verification.page.page_parts import Cell, Part, Section, Table, number, row, tally, words
 from verification.page.source_labels import source_label, symbol_of
-from verification.problem.line_profile import ON_BALL, Profile
+from verification.problem.line_profile import ON_BALL, Profile, coordinate_of
 from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS, SLOPES
-from verification.report.report_material import Material
 from verification.report.report_words import stated
 from verification.report.tables.case_lookup import (
     case_cell,
+    contact_radius,
     difference,
-    judged,
     reference_source,
     sources_with_profiles,
 )
@@ -60,15 +60,18 @@ class Accuracy:
         return "agrees" if self.ratio >= 1 else "inconclusive"
 
 
-def section(material: Material) -> Section | None:
-    """How often the stated uncertainty covers the true error, then the errors of each method."""
+def section(
+    results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], coverage: Table
+) -> Section | None:
+    """``coverage``, as ``coverage_table``, then the errors of each method; None where none is known."""
+    if not coverage:
+        return None
     parts = [
         Part("", [overview], folded=f"Errors of {source_label(source)}, case by case")
         for source in METHODS
-        if (overview := accuracy_overview(material, source))
+        if (overview := _overview(results, anchors, source))
     ]
-    coverage = Part("", [coverage_table(material.contacts)])
-    return Section("accuracy", "Accuracy against the exact reference", [coverage, *parts]) if parts else None
+    return Section("accuracy", "Accuracy against the exact reference", [Part("", [coverage]), *parts])
 
 
 @lru_cache(maxsize=256)
@@ -104,18 +107,26 @@ def _accuracy(result: CaseResult, claim: Claim, mine: Profile, exact: str) -> Ac
     return Accuracy(mine.source, claim.quantity, claim.line, float(error[worst]), estimate, smallest)
 
 
-def accuracy_overview(material: Material, source: str) -> Table:
+def judged(result: CaseResult, claim: Claim, position: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Marks the points of ``position`` judged by ``claim``: those outside its zone around the edge."""
+    a = contact_radius(result)
+    if not claim.edge or a is None or coordinate_of(claim.line) == "z":
+        return np.ones(position.shape, dtype=bool)
+    return np.abs(np.abs(position) - a) >= claim.edge * a
+
+
+def _overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], source: str) -> Table:
     """The errors of one method over all cases, the worst quantity of each group."""
     columns = [*SCALARS, *SLOPES, *PEAKS, *GROUPS]
     rows = []
-    for result in material.contacts:
+    for result in results:
         found = [item for item in accuracies(result) if item.source == source]
         if not found:
             continue
         cells = [
             _overview_cell([i for i in found if name in (i.quantity, _group_of(i.line))]) for name in columns
         ]
-        rows.append(row(case_cell(result, f"#{material.anchors[result]}-comparisons"), *cells))
+        rows.append(row(case_cell(result, f"#{anchors[result]}-comparisons"), *cells))
     return Table(
         f"Error of {source_label(source)} against the exact reference, then the uncertainty it states for "
         "the same point. Marked where the estimate is below the error (▼) or below half of it (▼▼).",

@@ -34,36 +34,40 @@ from verification.report.tables.line_csv import line_csv
 from verification.running.case_result import CaseResult
 
 
-def contents(material: Material, result: CaseResult) -> dict[str, Any]:
-    """What the template of a case shows."""
+def contents(material: Material, result: CaseResult, anchor: str) -> dict[str, Any]:
+    """What the template of a case shows under its ``anchor``."""
+    problem, verdicts, file = result.problem, result.verdicts, slug(result.name)
+    a_h, p_h = scale(problem, "a_h"), scale(problem, "p_h")
+    radius, ball = contact_radius(result), layers(problem, BALL)
     common = {
-        "anchor": material.anchors[result],
+        "anchor": anchor,
         "result": result,
         "outcome": OUTCOMES[result.outcome],
         "summary": summary(result),
         "command": rerun_command(result.name, material.info.command),
-        "facts": facts(result),
+        "facts": facts(problem),
         "failures": [(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
-        "layers": [layer_table(result), *([layer_table(result, BALL)] if layers(result, BALL) else [])],
-        "failing": failing_table(result),
+        "layers": [layer_table(problem), *([layer_table(problem, BALL)] if ball else [])],
+        "failing": failing_table(verdicts, a_h),
         "budget": budget_table(result),
-        "diagnostics": diagnostics_table(result),
+        "diagnostics": diagnostics_table(result.sources),
     }
     if result.published:
-        return common | {"tables": published_section.tables(result), "comparisons": comparison_table(result)}
-    file = slug(result.name)
+        tables = published_section.tables(result)
+        return common | {"tables": tables, "comparisons": comparison_table(verdicts)}
     broken = [one for one in result.invariants if one.outcome is not Outcome.AGREES]
     return common | {
+        "file": file,
         "contact": contact_tables(result),
-        "strips": case_strips(result, material.anchors[result]),
-        "sketch": sketch(result),
-        "pictures": pictures(result, material.planes.get(result.name)),
+        "strips": case_strips(items_of(verdicts), anchor),
+        "sketch": sketch(problem, radius),
+        "pictures": pictures(material.planes.get(result.name), a_h, p_h),
         "figures": case_figures(result),
         "beyond": material.evidence.beyond.get(result.name, ()),
         "maps": material.evidence.maps is not None,
         "model": material.evidence.models.get(result.name),
         "files": [
-            (line, line_csv(result, line), f"{file}-{slug(line)}.csv")
+            (line, line_csv(result.profiles, line), f"{file}-{slug(line)}.csv")
             for line in dict.fromkeys(profile.line for profile in result.profiles)
         ],
         "broken": invariants_section.invariant_table(broken),
@@ -126,9 +130,9 @@ def data(material: Material) -> dict[str, Any]:
                 list(OUTCOMES).index(item.verdict.outcome),
                 parts.setdefault(dominating_parameter(result, item.claim, item.verdict), len(parts)),
             ]
-            for item in ordered(items_of(result))
+            for item in ordered(items_of(result.verdicts))
         ]
-        scales = [float(scale(result, name)) for name in ("a_h", "p_h", "delta_h")]
+        scales = [float(scale(result.problem, name)) for name in ("a_h", "p_h", "delta_h")]
         scales += [float(divisor(result, name, 1.0)) for name in ("sigma_xx", "u_x")]
         scales.append(float(contact_radius(result) or scales[0]))
         cases[material.anchors[result]] = {"rows": rows, "scales": [_short(v, 9) for v in scales]}

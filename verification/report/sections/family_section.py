@@ -18,7 +18,6 @@ from verification.problem.array_types import Array
 from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.report.figures.line_panels import FIRST, swatch
-from verification.report.report_material import Material
 from verification.report.tables.case_lookup import (
     layers,
     reference_source,
@@ -39,14 +38,14 @@ Members = dict[float, CaseResult]  # by E1/E2, ascending
 Curves = dict[float, tuple[Array, Array]]  # by E1/E2
 
 
-def section(material: Material) -> Section | None:
-    """A gallery for every family among the cases of the run; None where there is none.
+def section(results: Sequence[CaseResult]) -> Section | None:
+    """A gallery for every family among the ``results``; None where there is none.
 
     A family: one coating, one thickness over a_h, one nu throughout, one friction, and three or more E1/E2,
     the uncoated solid as E1/E2 = 1.
     """
     parts = []
-    for (thickness, friction, nu), members in sorted(_families(material.contacts).items()):
+    for (thickness, friction, nu), members in sorted(_families(results).items()):
         if len(members) < SMALLEST:
             continue
         sliding = f"sliding with f = {friction:g}" if friction else "frictionless"
@@ -64,7 +63,7 @@ def _families(results: Sequence[CaseResult]) -> dict[tuple[float, float, float],
     coated: dict[tuple[float, float, float], Members] = {}
     bare: dict[tuple[float, float], CaseResult] = {}
     for result in results:
-        solid, a_h = layers(result), float(scale(result, "a_h"))
+        solid, a_h = layers(result.problem), float(scale(result.problem, "a_h"))
         friction = result.problem.get("friction")
         if not solid or len({nu for _, nu, _ in solid}) > 1 or not a_h > 0 or not isinstance(friction, float):
             continue
@@ -88,8 +87,8 @@ def _gallery(members: Members) -> Gallery:
         for ratio, result in members.items():
             profile = result.profile_of.get((quantity, line, reference_source(result) or ""))
             if profile is not None:
-                x, y = profile.position / scale(result, "a_h"), profile.value / scale(result, "p_h")
-                curves[ratio] = x, y
+                a_h, p_h = (scale(result.problem, name) for name in ("a_h", "p_h"))
+                x, y = curves[ratio] = profile.position / a_h, profile.value / p_h
                 what = f"E1/E2 = {plain(ratio, 3)}, {line}"
                 columns.append([f"{coordinate_of(line)} / a_h, {what}", *(f"{v:.6g}" for v in x)])
                 columns.append([f"{quantity} / p_h, {what}", *(f"{v:.6g}" for v in y)])
@@ -109,7 +108,7 @@ def _numbers(members: Members) -> Table:
     rows = []
     for ratio, result in members.items():
         found = [
-            (scalar(result, q.name, source), scale(result, q.scale)) for source in sources for q in scalars
+            (scalar(result, q.name, s), scale(result.problem, q.scale)) for s in sources for q in scalars
         ]
         cells = [number(float(one[0] / size) if one else None, "{:.6f}".format) for one, size in found]
         rows.append(row(Cell(plain(ratio, 3), ratio, note=result.title), *cells))

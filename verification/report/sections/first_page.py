@@ -103,7 +103,7 @@ def _largest(material: Material) -> list[str]:
     found = [
         (item.difference, item.claim, result)
         for result in material.results
-        for item in items_of(result)
+        for item in items_of(result.verdicts)
         if item.difference is not None
     ]
     found.sort(key=lambda one: one[0])
@@ -152,7 +152,7 @@ def _scale(claim: Claim) -> str:
 def chart(material: Material) -> dict[str, Any] | None:
     """All comparisons of the run, a row for each strip over one axis; None where there are none."""
     results, anchors = list(material.results), material.anchors
-    items = [item for result in results for item in items_of(result)]
+    items = [item for result in results for item in items_of(result.verdicts)]
     if not items:
         return None
     axis = axis_of(items)
@@ -173,7 +173,7 @@ def _strip_row(title: str, anchor: str, axis: Axis, members: Sequence[CaseResult
 
     anchor : of a case on its own.
     """
-    items = [item for result in members for item in items_of(result)]
+    items = [item for result in members for item in items_of(result.verdicts)]
     first = worst(items)
     agreeing = sum(item.verdict.outcome is Outcome.AGREES for item in items)
     outcome = min((result.outcome for result in members), key=lambda o: OUTCOMES[o].rank)
@@ -200,7 +200,7 @@ def _place(claim: Claim) -> str:
 
 
 def _badness(result: CaseResult) -> tuple[int, float]:
-    largest = max((item.difference or 0.0 for item in items_of(result)), default=0.0)
+    largest = max((item.difference or 0.0 for item in items_of(result.verdicts)), default=0.0)
     return OUTCOMES[result.outcome].rank, -largest
 
 
@@ -208,9 +208,9 @@ def _kind(result: CaseResult) -> str:
     """The group of cases that one belongs to."""
     if result.published:
         return "published"
-    count = len(layers(result)) - 1
+    count = len(layers(result.problem)) - 1
     parts = ["uncoated" if count < 1 else "one coating" if count == 1 else "several coatings"]
-    parts += ["elastic ball"] if layers(result, BALL) else []
+    parts += ["elastic ball"] if layers(result.problem, BALL) else []
     parts += ["sliding"] if result.problem.get("friction") else []
     return ", ".join(parts)
 

@@ -9,7 +9,6 @@ from verification.judging.verdict import Outcome
 from verification.page.number_text import plain, scientific
 from verification.page.page_parts import Cell, Part, Section, Table, number, row, tally
 from verification.page.source_labels import OUTCOMES, row_css, source_label
-from verification.report.report_material import Material
 from verification.report.report_words import stated
 from verification.running.case_result import CaseResult
 
@@ -45,9 +44,8 @@ def _share_cell(one: Invariant | None) -> Cell:
     return Cell(f"{style.mark} {_percent(one.share)}", one.share, f"verdict {style.css}", note)
 
 
-def section(material: Material) -> Section | None:
+def section(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str]) -> Section | None:
     """Every invariant over all cases, by source; None where no case has any."""
-    results, anchors = material.contacts, material.anchors
     rows = [(result, one) for result in results for one in result.invariants]
     if not rows:
         return None

@@ -12,27 +12,26 @@ from verification.page.page_parts import Cell, Part, Section, Table, number, out
 from verification.page.source_labels import row_css, source_label
 from verification.problem.line_profile import Profile
 from verification.problem.quantity import QUANTITIES
-from verification.report.report_material import Material
 from verification.report.report_words import stated
 from verification.running.case_result import CaseResult
 from verification.running.published_counts import counts
 from verification.sources.source_registry import METHODS, PUBLISHED, REFERENCES
 
 
-def section(material: Material) -> Section | None:
+def section(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str]) -> Section | None:
     """Every source at a glance, with the departures of the sources."""
-    if not material.published:
+    if not results:
         return None
-    parts = [Part("", [_overview(material)])]
-    if departures := _departures(material):
+    parts = [Part("", [_overview(results, anchors)])]
+    if departures := _departures(results, anchors):
         parts.append(Part("Departures of the sources", [departures]))
     return Section("published", "Published results", parts)
 
 
-def _overview(material: Material) -> Table:
+def _overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str]) -> Table:
     rows = []
-    sources = tuple(dict.fromkeys(s for result in material.published for s in _sources(result)))
-    for result in material.published:
+    sources = tuple(dict.fromkeys(s for result in results for s in _sources(result)))
+    for result in results:
         tables = result.published["tables"]
         cells = [
             outcome_cell(result.outcome),
@@ -45,9 +44,9 @@ def _overview(material: Material) -> Table:
         ]
         for source in sources:
             cells += _method_cells(result, source) if source in _sources(result) else [Cell("–"), Cell("–")]
-        head = Cell(result.title, note=result.source, href=f"#{material.anchors[result]}")
+        head = Cell(result.title, note=result.source, href=f"#{anchors[result]}")
         rows.append(row(head, *cells, css=row_css(result.outcome)))
-    counted, departing, recomputed = counts(material.published)
+    counted, departing, recomputed = counts(results)
     return Table(
         stated("published", counted=counted, departing=departing, recomputed=recomputed),
         ["source", "verdict", "year", "seen", "counted", "depart", "recomputed"]
@@ -57,9 +56,9 @@ def _overview(material: Material) -> Table:
     )
 
 
-def _departures(material: Material) -> Table:
+def _departures(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str]) -> Table:
     rows = []
-    for result in material.published:
+    for result in results:
         for (file, column, _), items in _columns(result).items():
             found = [
                 (abs(size * item["to_si"]) / item["scale"], size, item, n)
@@ -73,7 +72,7 @@ def _departures(material: Material) -> Table:
             unit = f" {item['unit']}" if item["unit"] != "1" else ""
             rows.append(
                 row(
-                    Cell(result.title, href=f"#{material.anchors[result]}"),
+                    Cell(result.title, href=f"#{anchors[result]}"),
                     f"{column} of {file}",
                     Cell("recomputed" if item["seen"] == RECOMPUTED else "published"),
                     tally(len(found), sum(len(one["text"]) for one in items)),

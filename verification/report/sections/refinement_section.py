@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from verification.credibility.accuracy_study import CORRECTED, PLAIN, PROBLEM, STAIRCASE
+from verification.credibility.accuracy_study import CORRECTED, PLAIN, PROBLEM, STAIRCASE, AccuracyStudy
 from verification.credibility.refinement_studies import QUANTITIES, Refinement
 from verification.judging.invariants import Invariant
 from verification.judging.invariants.influence_error import ConversionError
@@ -12,7 +12,6 @@ from verification.page.page_parts import Cell, Gallery, Part, Section, Table, nu
 from verification.page.source_labels import OUTCOMES, row_css
 from verification.page.svg_loglog import DASHES, DOTS, MIXED, UNKNOWN, Plot, Trail, panels
 from verification.report.figures.line_panels import swatch
-from verification.report.report_material import Material
 from verification.report.report_words import stated
 from verification.sources.source_record import Style
 
@@ -31,9 +30,8 @@ _SETTINGS = {
 }
 
 
-def semianalytic_section(material: Material) -> Section | None:
+def semianalytic_section(study: AccuracyStudy | None) -> Section | None:
     """Errors of the semi-analytical method over its grid; None where they were not measured."""
-    study = material.evidence.accuracy
     if study is None:
         return None
     grids = [one for one in study.refinements if one.method == "semianalytic"]
@@ -50,9 +48,8 @@ def semianalytic_section(material: Material) -> Section | None:
     return Section("semi-analytical-accuracy", "Semi-analytical accuracy", parts, tuple(failures))
 
 
-def finite_element_section(material: Material) -> Section | None:
+def finite_element_section(study: AccuracyStudy | None) -> Section | None:
     """Errors of the finite elements over their mesh; None where they were not measured."""
-    study = material.evidence.accuracy
     elements = [one for one in study.refinements if one.method == "fem_reference"] if study else []
     if study is None or not elements:
         return None

@@ -1,15 +1,16 @@
-"""Lookup in a case result: scales, references, judged points."""
+"""Lookup in a case result: scales, references, differences."""
 
 import re
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from verification.judging.verdict import Claim, Comparison
+from verification.judging.verdict import Comparison
 from verification.page.page_parts import Cell
 from verification.problem.coated_contact import BALL, FLAT
-from verification.problem.line_profile import Profile, coordinate_of
+from verification.problem.line_profile import Profile
 from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import CaseResult
 from verification.sources.source_registry import METHODS, REFERENCES
@@ -34,23 +35,23 @@ def reference_source(result: CaseResult) -> str | None:
     return next((choice[-1] for choice in (exact, references, elements) if choice), None)
 
 
-def scale(result: CaseResult, name: str) -> np.float64:
-    """A Hertz scale of the case by name, "a_h", "p_h" or "delta_h"; NaN where it is not stated."""
+def scale(problem: Mapping[str, Any], name: str) -> np.float64:
+    """A Hertz scale of a problem by name, "a_h", "p_h" or "delta_h"; NaN where it is not stated."""
     try:
-        return np.float64(result.problem[name])
+        return np.float64(problem[name])
     except (KeyError, TypeError, ValueError):
         return np.float64("nan")
 
 
-def layers(result: CaseResult, body: str = FLAT) -> list[tuple[float, float, float]]:
+def layers(problem: Mapping[str, Any], body: str = FLAT) -> list[tuple[float, float, float]]:
     """(E [Pa], nu, thickness [m]) from the surface down, the substrate last with thickness infinity.
 
     [] where the problem states anything else than finite numbers, and of a rigid ball.
     """
     try:
-        given, substrate = result.problem["coatings"], result.problem["substrate"]
+        given, substrate = problem["coatings"], problem["substrate"]
         if body == BALL:
-            *substrate, given = result.problem.get("ball") or (None, None, ())
+            *substrate, given = problem.get("ball") or (None, None, ())
         coatings = [(float(E), float(nu), float(h)) for E, nu, h in given]
         E, nu = (float(value) for value in substrate)
     except (KeyError, TypeError, ValueError):
@@ -79,14 +80,6 @@ def contact_radius(result: CaseResult) -> float | None:
     return None
 
 
-def judged(result: CaseResult, claim: Claim, position: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Marks the points of ``position`` judged by ``claim``: those outside its zone around the edge."""
-    a = contact_radius(result)
-    if not claim.edge or a is None or coordinate_of(claim.line) == "z":
-        return np.ones(position.shape, dtype=bool)
-    return np.abs(np.abs(position) - a) >= claim.edge * a
-
-
 def difference(
     result: CaseResult, first: Profile | None, second: Profile | None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None] | None:
@@ -106,7 +99,7 @@ def divisor(result: CaseResult, quantity: str, value: Any) -> np.float64:
     best = reference_source(result)
     found = [scalar(result, name, best) if best else None for name in ("peak_pressure", "approach")]
     p0, delta = (np.float64(0.0 if one is None else one[0]) for one in found)
-    p_h, delta_h = scale(result, "p_h"), scale(result, "delta_h")
+    p_h, delta_h = scale(result.problem, "p_h"), scale(result.problem, "delta_h")
     if quantity not in QUANTITIES:
         return p_h
     a = contact_radius(result) or np.nan

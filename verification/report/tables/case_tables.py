@@ -1,6 +1,6 @@
 """The tables of one case: contact, verdicts, uncertainty budget, run times."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from math import isfinite, isinf
 from typing import Any
@@ -15,7 +15,7 @@ from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import BALL_PEAKS, PEAKS, QUANTITIES, SCALARS, SLOPES, unit_of
 from verification.report.report_words import stated
 from verification.report.tables.case_lookup import INDENTERS, layers, scalar, scale
-from verification.running.case_result import CaseResult
+from verification.running.case_result import CaseResult, SourceResult
 
 # A failed source fails every comparison; the list before the figures stays short.
 MOST_FAILING = 6
@@ -34,9 +34,9 @@ _FACTS = {
 }
 
 
-def facts(result: CaseResult) -> list[tuple[str, str]]:
+def facts(problem: Mapping[str, Any]) -> list[tuple[str, str]]:
     """(name, value) of each parameter and each Hertz scale of a problem."""
-    given = {"friction": 0.0} | result.problem
+    given = {"friction": 0.0, **problem}
     texts, found = _FACTS, []
     if indenter := given.get("indenter"):
         # all numbers but that of the lobes are lengths
@@ -54,14 +54,14 @@ def facts(result: CaseResult) -> list[tuple[str, str]]:
     ]
 
 
-def layer_table(result: CaseResult, body: str = FLAT) -> Table:
+def layer_table(problem: Mapping[str, Any], body: str = FLAT) -> Table:
     """The layers of a body from its surface inwards, in real units and against its bare substrate.
 
     Thicknesses are over a_h, or over the radius of a prescribed load.
     """
-    length = "a" if "load_radius" in result.problem else "a_h"
-    a_h = scale(result, "load_radius" if length == "a" else "a_h")
-    found = layers(result, body)
+    length = "a" if "load_radius" in problem else "a_h"
+    a_h = scale(problem, "load_radius" if length == "a" else "a_h")
+    found = layers(problem, body)
 
     def thickness(h: float, shown: str) -> Cell:
         return Cell("∞" if isinf(h) else shown, h)
@@ -82,12 +82,14 @@ def layer_table(result: CaseResult, body: str = FLAT) -> Table:
 
 def contact_tables(result: CaseResult) -> list[Table]:
     """The numbers of the contact, then of an elastic ball those of its own surface."""
-    ball = [_contact_table(result, BALL_PEAKS, "The surface of the ball.")] if layers(result, BALL) else []
     text = (
         "In parentheses the uncertainty of the last digits. Below, |A − B| of each pair of sources, its U, "
         "over the value; of the largest tension over the smaller of p_h and p0, of its place over a."
     )
-    return [table for table in (_contact_table(result, SCALARS + SLOPES + PEAKS, text), *ball) if table]
+    tables = [_contact_table(result, SCALARS + SLOPES + PEAKS, text)]
+    if layers(result.problem, BALL):
+        tables.append(_contact_table(result, BALL_PEAKS, "The surface of the ball."))
+    return [table for table in tables if table]
 
 
 def _contact_table(result: CaseResult, quantities: Sequence[str], caption: str) -> Table:
@@ -120,9 +122,9 @@ def _judged_cell(verdict: Verdict, value: float | None) -> Cell:
     return Cell(f"{style.mark} {scientific(value)}", value, f"verdict {style.css}", verdict.reason)
 
 
-def comparison_table(result: CaseResult) -> Table:
+def comparison_table(compared: Sequence[tuple[Claim, Verdict]]) -> Table:
     """Largest difference and largest U of every pair of sources, a row for each quantity on each line."""
-    verdicts = {(c.quantity, c.line, c.between): (c, v) for c, v in result.verdicts}
+    verdicts = {(c.quantity, c.line, c.between): (c, v) for c, v in compared}
     pairs = list(dict.fromkeys(between for _, _, between in verdicts))
     rows = []
     for quantity, line in dict.fromkeys((quantity, line) for quantity, line, _ in verdicts):
@@ -141,10 +143,9 @@ def comparison_table(result: CaseResult) -> Table:
     )
 
 
-def failing_table(result: CaseResult) -> Table:
+def failing_table(compared: Sequence[tuple[Claim, Verdict]], a_h: float) -> Table:
     """The comparisons that do not agree, the worst first; ``MOST_FAILING`` of them."""
-    a_h = scale(result, "a_h")
-    bad = [item for item in result.verdicts if item[1].outcome is not Outcome.AGREES]
+    bad = [item for item in compared if item[1].outcome is not Outcome.AGREES]
     more = f" The worst {MOST_FAILING} of {len(bad)}." if len(bad) > MOST_FAILING else ""
 
     def where(claim: Claim, verdict: Verdict) -> Cell:
@@ -185,7 +186,7 @@ def budget_table(result: CaseResult) -> Table:
             largest = max(filter(isfinite, parts), default=0.0)
             dominant = "dominant" if value == largest > 0 and len(parts) > 1 else ""
             found = scalar(result, quantity, source.source)
-            size = abs(found[0]) if found else scale(result, "p_h")
+            size = abs(found[0]) if found else scale(result.problem, "p_h")
             rows.append(
                 row(
                     source_label(source.source),
@@ -204,11 +205,11 @@ def budget_table(result: CaseResult) -> Table:
     )
 
 
-def diagnostics_table(result: CaseResult) -> Table:
+def diagnostics_table(sources: Iterable[SourceResult]) -> Table:
     """Diagnostics of each source: iterations, residuals, unknowns."""
     rows = [
         row(source_label(source.source), name.replace("_", " "), _shown(value))
-        for source in result.sources
+        for source in sources
         for name, value in source.diagnostics.items()
     ]
     return Table("Diagnostics reported by each source.", ["source", "diagnostic", "value"], rows)

@@ -1,5 +1,6 @@
 """Every number on a line of a case as CSV."""
 
+from collections.abc import Iterable
 from itertools import zip_longest
 
 import numpy as np
@@ -7,18 +8,17 @@ import numpy as np
 from verification.page.page_parts import written
 from verification.problem.line_profile import Profile, coordinate_of
 from verification.problem.quantity import unit_of
-from verification.running.case_result import CaseResult
 
 MOST_DIGITS = 10
 
 
-def line_csv(result: CaseResult, line: str) -> str:
+def line_csv(profiles: Iterable[Profile], line: str) -> str:
     """Every quantity of every source on ``line`` as CSV, SI units in the column heads.
 
     Sources at the same positions share one position column; another one follows where they differ.
     """
     groups: list[list[Profile]] = []
-    for profile in result.profiles:
+    for profile in profiles:
         if profile.line != line:
             continue
         same = [g for g in groups if g[0].position.tobytes() == profile.position.tobytes()]
