@@ -136,8 +136,7 @@ class Level:
         return replace(self.grid, quarter=False).x
 
     def smooth(self, coarser: int = 0) -> RingPressure | None:
-        """The pressure with a smooth edge, on rings of fewer points where ``coarser``; None of patches
-        alone."""
+        """The pressure with a smooth edge, on fewer rings where ``coarser``; None of patches alone."""
         if self.given is not None:
             return Disc(self.given.radius, self.given.of_square, 24 - 4 * coarser, 10 - coarser)
         return None if self.shape is None else rings_of(self.shape, coarser)

@@ -9,6 +9,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,7 +19,7 @@ from semianalytic import fields
 from semianalytic.inputs import Body, check_finite
 from semianalytic.level import Level, interpolated
 from semianalytic.neighbours import Neighbours
-from semianalytic.uncertainty import SMOOTH, Uncertainty, safety
+from semianalytic.uncertainty import SMOOTH, Uncertainty, safety, unsettled
 
 Array = NDArray[np.floating]
 
@@ -169,8 +170,7 @@ class Solution:
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Contact pressure [Pa], 0 outside; x, y : [m], broadcast.
 
-        With a smooth edge that of its shape, fitted to the patches; of patches alone interpolated between
-        them by p^2.
+        With a smooth edge that of its shape, fitted to the patches; of patches alone p^2 is interpolated.
         """
         return self._level.pressure(x, y)
 
@@ -263,8 +263,7 @@ class Solution:
         return highest * d / (d + np.hypot(interpolated(self.nodes, away, x, y, order=1) * d, z))
 
     def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """Uncertainty of the pressure [Pa] of a smooth edge: of its shape at the same x/a, and of its
-        radius."""
+        """Uncertainty of the pressure [Pa] of a smooth edge: of its shape at equal x/a, and of its radius."""
         fine = self._level.shape
         assert fine is not None
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
@@ -307,10 +306,9 @@ class Solution:
 
         The largest difference over the six components, for every component alike, of this level and the next,
         or of the next and the one after, at the same x/a of each. Under a smooth edge times ``INSIDE`` to
-        ``AT_EDGE``, plus ``FLOOR`` of the peak; or the change by the uncertain radius
-        near the edge, where that is larger, unless the solution is ``relative_to_edge``. Of patches alone
-        times ``safety``, or a third, plus the error of the evaluation, ``EVALUATION`` of the peak. Both with
-        the changes of the peak pressure by the other numerical parameters.
+        ``AT_EDGE``, plus ``FLOOR`` of the peak; or the change by the uncertain radius, where that is larger,
+        unless the solution is ``relative_to_edge``. Of patches alone times ``safety``, or a third, plus
+        ``EVALUATION`` of the peak. Both with the changes of the peak by the other numerical parameters.
         Raises ValueError where no uncertainty was estimated.
         """
         stated, floor, solid = self._stated, self._other_parameters, self._body.named(body)
@@ -344,9 +342,7 @@ class Solution:
         if self._level.shape is not None:
             near = self._to_edge(x, y) / (2 * self.diagnostics.patch_size)
             share = 1 / (1 + near * near)
-        of_last, of_before = (
-            inside + (edge - inside) * share for inside, edge in zip(INSIDE, AT_EDGE, strict=True)
-        )
+        of_last, of_before = (far + (at - far) * share for far, at in zip(INSIDE, AT_EDGE, strict=True))
         change: Array = np.maximum(of_last * last, of_before * before)
         return change
 
@@ -356,17 +352,16 @@ class Solution:
 
     @cached_property
     def _edge_change(self) -> float:
-        """Largest last change of the pressure [Pa] within ``TAPER`` patches of a smooth edge, at equal x/a.
+        """Largest change of the pressure [Pa] within ``TAPER`` patches of a smooth edge, at equal x/a.
 
-        The change crosses zero there, at places that differ from grid to grid.
+        The change crosses zero at places that differ between grids.
         """
-        shapes = [level.shape for level in self._levels[:2] if level.shape is not None]
-        if len(shapes) < 2:
-            return 0.0
-        width = min(TAPER * self.diagnostics.patch_size / min(shapes[0].axes), 1.0)
+        shapes = [level.shape for level in self._levels if level.shape is not None]
+        width = min(TAPER * self.diagnostics.patch_size / min(shapes[0].axes), 1.0) if shapes else 0.0
         s = 1 - width * np.linspace(1.0, 0.0, 33) ** 2
         p = [one.pressure(*one.on_ray(s, np.zeros(s.size))) for one in shapes]
-        return float(np.abs(p[0] - p[1]).max())
+        last, before = [*(float(np.abs(a - b).max()) for a, b in pairwise(p)), 0.0, 0.0][:2]
+        return unsettled(last, before)
 
     def _misfit(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Error [Pa] by what the shape of the pressure misses inside."""

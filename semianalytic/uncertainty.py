@@ -38,6 +38,11 @@ def safety(ratio: float) -> float:
     return float(max(1.0, 1 / (ratio**1.5 - 1)))
 
 
+def unsettled(last: float, before: float) -> float:
+    """The last change, up to four times where it falls by less than half and more is to come."""
+    return last * min(max(1.0, (2 * last / before) ** 2), 4.0) if before else last
+
+
 @dataclass(frozen=True)
 class Uncertainty:
     """Numerical uncertainty in SI units; budget : rows (quantity, numerical parameter, value).
@@ -126,7 +131,7 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
 def is_met(accuracy: float, estimate: Uncertainty, levels: list[Level]) -> bool:
     """Whether the scalars, and the pressure under a smooth edge, are as accurate as asked, relative."""
     last, before = (_pressure_change(levels[k], levels[k - 1]) for k in (-1, -2))
-    change = max(last, EARLIER * before) / levels[-1].scalars["peak_pressure"]
+    change = max(unsettled(last, before), EARLIER * before) / levels[-1].scalars["peak_pressure"]
     return estimate.relative_to(levels[-1].scalars) <= accuracy and change <= PRESSURE * accuracy
 
 
