@@ -67,6 +67,11 @@ class PressedEllipsoid:
     uncertainty: Uncertainty = EXACT
     diagnostics: None = None
 
+    @property
+    def surface_nodes(self) -> Array:
+        """Points x on y = 0 [m] to sample at."""
+        return self.contact_radius * np.linspace(-2.5, 2.5, 501)
+
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """p0 sqrt(1 - x^2/a_x^2 - y^2/a_y^2) [Pa], 0 outside."""
         inside = 1 - (np.asarray(x) / self.axes[0]) ** 2 - (np.asarray(y) / self.axes[1]) ** 2
