@@ -95,7 +95,8 @@ def measure() -> AccuracyStudy:
     failures += [f"{r.method}, {r.solid}, {r.setting}, {r.failure}" for r in refinements if r.failure]
     conversions = attempt("conversions of the influence coefficients", lambda: conversion_errors(COATED))
     discs = attempt("discs", lambda: discs_of())
-    ellipses = attempt("ellipses", lambda: tuple(turned_ellipse(BARE)))
+    ellipses = attempt("ellipses", lambda: tuple(turned_ellipse(BARE, "load")))
+    ellipses += attempt("ellipses", lambda: tuple(turned_ellipse(BARE, "approach")))
     ellipses += attempt("iterations", lambda: tuple(iteration_counts(COATED, "coated")))
     ellipses += attempt("grids", lambda: tuple(grid_ratios(COATED, "coated")))
     seconds = time.perf_counter() - begin
@@ -123,7 +124,8 @@ def quick() -> tuple[Invariant, ...]:
         lambda: verdicts(
             [grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False)]
         ),
-        lambda: verdicts(errors=turned_ellipse(BARE)),
+        lambda: verdicts(errors=turned_ellipse(BARE, "approach")),
+        lambda: verdicts(errors=turned_ellipse(BARE, "load")),
         lambda: verdicts(errors=iteration_counts(COATED, "coated")),
         lambda: verdicts(errors=grid_ratios(COATED, "coated")),
     )

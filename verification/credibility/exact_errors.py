@@ -34,8 +34,10 @@ INSIDE = np.array([-0.8, -0.55, -0.3, 0.0, 0.21, 0.47, 0.7])  # of the radius, o
 QUARTER = ((0.0, 0.3, 0.75, 0.2, 0.5, 0.6, 0.9, 1.0), (0.0, 0.0, 0.0, 0.7, 0.5, 0.3, 0.9, 1.0))
 SIDE = 0.07  # of a patch, over a_h
 FILMS = {"film of one patch": 1.0, "film of five patches": 5.0}  # thickness over that
-ANGLE = 0.4  # of the long axis from x
-BETWEEN = 0.4  # of a patch, by which the turned ellipse lies beside a patch centre
+# of the long axis from x, under a given load or approach; the latter's window of the grid is a square that is
+# not symmetric
+ANGLES = {"load": 0.4, "approach": np.pi / 4}
+BESIDE = 4.4  # patches along x and -y between the middles of the grid and of the turned ellipse
 WIDE = 1.15  # half-width of the grid over the long semi-axis
 MOST = 600  # iterations that are allowed
 
@@ -212,39 +214,37 @@ def grid_ratios(problem: CoatedContact, solid: str) -> list[ExactError]:
     return [ExactError("grids of the uncertainty", solid, "ratio of patches", ratio)]
 
 
-def turned_ellipse(problem: CoatedContact) -> list[ExactError]:
-    """Errors of a contact of the load and modulus of ``problem``, uncoated, under that load and approach."""
+def turned_ellipse(problem: CoatedContact, given: str) -> list[ExactError]:
+    """Errors of a contact of the load and modulus of ``problem``, uncoated; ``given`` is load or approach."""
     import semianalytic
 
     a, b = 2**0.5 * problem.a_h, problem.a_h / 2**0.5
     exact = HertzEllipse(a, b, problem.p_h, problem.E_star)
-    (A, B), c, s = exact.curvatures, np.cos(ANGLE), np.sin(ANGLE)
-    aside = BETWEEN * 2 * WIDE * a / PATCHES
+    (A, B), c, s = exact.curvatures, np.cos(ANGLES[given]), np.sin(ANGLES[given])
+    aside = BESIDE * 2 * WIDE * a / PATCHES
 
     def height(x: Any, y: Any) -> Any:
-        return A * (c * (x - aside) + s * y) ** 2 + B * (c * y - s * (x - aside)) ** 2
+        x, y = x - aside, y + aside
+        return A * (c * x + s * y) ** 2 + B * (c * y - s * x) ** 2
 
-    found = []
-    for load, approach in ((exact.load, None), (None, exact.approach)):
-        one = semianalytic.indent(
-            profile=height,
-            half_width=WIDE * a,
-            load=load,
-            approach=approach,
-            coatings=(),
-            substrate=problem.substrate,
-            patches=PATCHES,
-            estimate_uncertainty=False,
-        )
-        errors = {
-            "peak pressure": one.peak_pressure / exact.p0 - 1,
-            "contact radius": one.contact_radius / problem.a_h - 1,
-            "approach": one.approach / exact.approach - 1 if approach is None else 0.0,
-            "load": one.diagnostics.load / exact.load - 1,
-        }
-        what = "ellipse 2 : 1, turned" + ("" if approach is None else ", given approach")
-        found += [ExactError(what, "uncoated", name, abs(error)) for name, error in errors.items()]
-    return found
+    one = semianalytic.indent(
+        profile=height,
+        half_width=WIDE * a,
+        load=exact.load if given == "load" else None,
+        approach=exact.approach if given == "approach" else None,
+        coatings=(),
+        substrate=problem.substrate,
+        patches=PATCHES,
+        estimate_uncertainty=False,
+    )
+    errors = {
+        "peak pressure": one.peak_pressure / exact.p0 - 1,
+        "contact radius": one.contact_radius / problem.a_h - 1,
+        "approach": one.approach / exact.approach - 1 if given == "load" else 0.0,
+        "load": one.diagnostics.load / exact.load - 1,
+    }
+    what = "ellipse 2 : 1, turned" + ("" if given == "load" else ", given approach")
+    return [ExactError(what, "uncoated", name, abs(error)) for name, error in errors.items()]
 
 
 def _largest(fields: list[Array]) -> float:
