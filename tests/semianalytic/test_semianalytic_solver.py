@@ -71,6 +71,19 @@ def test_the_displacement_of_patches_alone_is_within_its_uncertainty_beside_the_
     assert (np.abs(u - exact.displacement(x, 0.1 * A_H, 0 * x)) <= U).all()
 
 
+def test_a_pressure_whose_change_does_not_fall_is_refined():
+    # a stiff film: the pressure beside the edge changes by 2.6e-5 from grid to grid, and is 1.6e-4 off
+    film = ((70e9, 0.22, 2.69693e-6),)
+    s, finer = (
+        solve(film, radius=1e-3, load=0.1, substrate=(3.3e9, 0.37), patches=n, accuracy=1e-5,
+              estimate_uncertainty=True)
+        for n in (257, 987)
+    )  # fmt: skip
+    share = 1 - np.geomspace(1e-4, 0.2, 60)
+    error = s.pressure(share * s.contact_radius) - finer.pressure(share * finer.contact_radius)
+    assert (np.abs(error) <= s.relative_to_edge.pressure_uncertainty(share * s.contact_radius)).all()
+
+
 @pytest.mark.slow
 def test_a_grid_that_first_resolves_the_edge_is_followed_by_another():
     # a soft film on a stiff one on a soft one: 987 patches are the first with polynomials enough

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from case_texts import case_text
 
-from verification.cases.case_file import parse_case
+from verification.cases.case_file import parse_case, read_case, shaped_cases
 from verification.judging.verdict import Outcome
 from verification.problem.quantity import SCALARS
 from verification.running.case_result import from_json, to_json
 from verification.running.contact_run import judge_case, run, solve_case
 from verification.sources.references import integral_equation
 from verification.sources.references.hertz import Hertz
+from verification.sources.source_registry import solvers
 
 CASE = case_text("E = 420e9; nu = 0.25; thickness_over_a_h = 0.5").encode()
 
@@ -162,3 +163,12 @@ def test_one_more_scalar_leaves_every_verdict_as_it_was(case, monkeypatch):
     before = judged(case, sources()).verdicts
     monkeypatch.setattr("verification.running.contact_run.SCALARS", (*SCALARS, "stiffness"))
     assert judged(case, sources()).verdicts == before
+
+
+def test_a_case_that_both_methods_fail_ends_without_results_though_a_closed_form_is_left():
+    def fails(*_):
+        raise ValueError("no")
+
+    available = {"semianalytic": fails, "fem_reference": fails, "hertz": solvers()["hertz"]}
+    result = run(read_case(shaped_cases()["24_ellipse"]), available)
+    assert {verdict.outcome for _, verdict in result.verdicts} == {Outcome.NO_RESULT}
