@@ -1,8 +1,14 @@
 """The packages in rooms: small folders and files, names that stand alone, imports downwards only."""
 
 import ast
+import json
+import subprocess
+import sys
 from collections import defaultdict
+from itertools import groupby
 from pathlib import Path
+
+import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("semianalytic", "fem_reference", "verification")
@@ -113,3 +119,16 @@ def test_stored_evidence_is_small_and_read_without_the_campaigns_that_make_it():
 def test_every_module_says_what_it_holds_in_its_first_line():
     docs = {path: ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) for path in MODULES}
     assert [path for path, text in docs.items() if not text] == []
+
+
+@pytest.mark.slow
+def test_the_way_of_a_case_to_the_page_is_short(tmp_path):
+    """A stay is a visit to a file, a return one to a file left before, a climb a call of a higher room."""
+    tool = [sys.executable, ROOT / "tests" / "tools" / "case_path.py", "05_ratio_4", tmp_path]
+    done = subprocess.run(tool, cwd=ROOT, capture_output=True, text=True, check=True)
+    calls = json.loads(done.stdout)
+    stays = [file for file, _ in groupby(file for file, _, _ in calls)]
+    floors = [[FLOOR.get(Path(file).parts[1], len(FLOORS)) for file in (to, by or to)] for to, _, by in calls]
+    assert len(stays) <= 50
+    assert len(stays) - len(set(stays)) <= 20
+    assert sum(to > by for to, by in floors) <= 4
