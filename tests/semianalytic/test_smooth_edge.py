@@ -109,8 +109,9 @@ def test_edge_patches_of_an_ellipse_carry_its_load():
         (1.5, 70, 97, True),
         (2, 25, 84, True),
         (3, 0, 129, True),
-        pytest.param(4, 30, 257, True, marks=pytest.mark.slow),
-        # its contour, oblique to the axes, is not found on so few patches: what is left is their staircase
+        pytest.param(4, 30, 321, True, marks=pytest.mark.slow),
+        # its contour, oblique to the axes, is not found on so few patches: what is left is their staircase;
+        # nor is that of 4 : 1 on 257, since pointed ends have more harmonics
         pytest.param(5, 30, 257, False, marks=pytest.mark.slow),
     ],
 )

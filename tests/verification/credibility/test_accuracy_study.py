@@ -49,7 +49,7 @@ def test_study_goes_on_where_a_part_of_it_fails(monkeypatch):
     monkeypatch.setattr(accuracy_study, "refined_mesh", lambda *_, **__: failed)
     monkeypatch.setattr(accuracy_study, "conversion_errors", broken)
     found = accuracy_study.measure()
-    assert len(found.refinements) == 8
+    assert len(found.refinements) == 9
     assert found.conversions == ()
     assert len(found.failures) == 4
 
