@@ -4,6 +4,7 @@ Each entry is a function of ``verification`` that is given the case, its result 
 alone or in a list or mapping, with the file it is called from, in the order of the first calls.
 """
 
+import inspect
 import json
 import sys
 from pathlib import Path
@@ -52,9 +53,9 @@ def note(frame, event, _):
     code = frame.f_code
     if event != "call" or "/verification/" not in code.co_filename:
         return
-    count = code.co_argcount + code.co_kwonlyargcount + bool(code.co_flags & 4) + bool(code.co_flags & 8)
+    names, *more, held = inspect.getargvalues(frame)
     key = (Path(code.co_filename).relative_to(ROOT).as_posix(), code.co_qualname)
-    if key not in found and any(is_given(frame.f_locals.get(name)) for name in code.co_varnames[:count]):
+    if key not in found and any(is_given(held.get(name)) for name in (*names, *more)):
         found[key] = file_of(frame)
 
 
