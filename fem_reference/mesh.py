@@ -33,7 +33,7 @@ _LEAST_ROW = 0.25
 # Growth of triangles below an evenly divided surface, and beyond the contact, a unit of the stretched plane.
 _BELOW, _BEYOND = 0.2, 0.5
 # The size at an edge on such a surface, and its growth with the distance, times the size elsewhere.
-_LEAST, _RATE = 1 / 24, 11.0
+_LEAST, _RATE, _BURIED = 1 / 24, 11.0, 7.5  # the last on interfaces, where 11 errs by 8e-4 p_h
 # The largest sizes at the edge, far away and in coatings. A film of one row of triangles as high as the last
 # makes the contact too stiff by up to 1e-5.
 _LARGEST_AT_EDGE, _LARGEST_FAR, _LARGEST_IN_FILM = 0.6, 0.7, 0.47
@@ -220,6 +220,9 @@ def _triangulate(
             for r in grading.edges:
                 away = f"Sqrt((Sinh(x)+{_literal((1 - r) * scale)})^2+Sinh(y)^2)"
                 sizes.append(f"Max({least},{rate}*{away})/Cosh(Min(x,0))")
+                for _, lower in films:
+                    buried = f"{_literal(_BURIED * grading.surface)}*{away.replace('y', _literal(lower))}"
+                    sizes.append(f"{buried}/Cosh(Min(x,0))+0.4*Abs(y-({_literal(lower)}))")
         for upper, lower in films:
             away = f"Max(0,Max(y-({_literal(lower)}),{_literal(upper)}-y))"
             row = max((lower - upper) / grading.rows, _LEAST_ROW * grading.size)

@@ -35,9 +35,9 @@ NEGLIGIBLE = 1e-9  # of the largest: a harmonic of the pressure below is left ou
 # fall as m^-5/2, of the stress, m^-3/2, and alternate in sign but at the edge.
 BEYOND = 0.5, 1.0
 FULL = 0.4  # of the harmonics count in full in a stress, those beyond ever less
-# Distances from an edge, over the triangles there, between which the series beside it is fitted; its half
-# powers, and as many to see what they add.
-BESIDE, HALVES = (1.2, 24.0), (3, 2)
+# Distances from an edge, over the triangles there, between which the series beside it is fitted, and within
+# which it is used; its half powers, and as many to see what they add.
+BESIDE, WITHIN, HALVES = (1.2, 16.0), 2.5, (3, 2)
 
 
 def check_pressure(
@@ -229,11 +229,11 @@ class OffAxisFields:
         surface = at.z == 0
         x, along = at.r_given * points.cos, surface & (np.abs(points.sin) < 1e-9)
         for k, edge in enumerate(self.edges):
-            near = np.flatnonzero(along & (np.abs(x - edge) < self.least))
+            near = np.flatnonzero(along & (np.abs(x - edge) < WITHIN * self.least))
             if near.size:
                 away = np.sign(edge) * (x[near] - edge) / self.least
                 more, fewer = ((_powers(away, n) @ c).T for n, c in zip(HALVES, self._series[k], strict=True))
-                s[:2, near] = more
+                s[:2, near] = more + self._root(x[near], edge)
                 late_s[:2, near] += more - fewer
         p = np.where(surface, self.pressure(at.r_given * points.cos, at.r_given * points.sin), 0.0)
         nu, f = self.compliance.solid.materials[0][1], self.friction
@@ -269,22 +269,28 @@ class OffAxisFields:
         return u, np.tensordot(tapered, strain * waves[:, [0, 0, 0, 0, 1, 1]], 1)
 
     @cached_property
-    def _series(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Coefficients (powers, 2) of rr and tt beside each edge, with three half powers and with two.
+    def _series(self) -> list[list[np.ndarray]]:
+        """Coefficients (powers, 2) of rr and tt less ``_root`` beside each edge, with as many as ``HALVES``.
 
-        Fitted where the triangles are no larger than their distance from the edge.
+        Fitted where triangles are no larger than their distance from the edge. A root fitted errs by 1e-3.
         """
         found = []
-        away = self.least * np.geomspace(*BESIDE, 24)
-        away = np.concatenate([-away, away])
+        away = self.least * np.outer([-1, 1], np.geomspace(*BESIDE, 24)).ravel()
         for edge in self.edges:
             x, zero = edge + np.sign(edge) * away, np.zeros(away.size)
             located = self.discretisation.locator.points(np.abs(x), zero, zero.astype(int))
             _, s, _, _ = self._summed(SolidPoints(located, np.sign(x), zero, x.shape))
-            terms = [_powers(away / self.least, n) for n in HALVES]
-            more, fewer = (np.linalg.lstsq(one, s[:2].T, rcond=None)[0] for one in terms)
-            found.append((more, fewer))
+            rest = (s[:2] - self._root(x, edge)).T
+            terms = (_powers(away / self.least, n) for n in HALVES)
+            found.append([np.linalg.lstsq(one, rest, rcond=None)[0] for one in terms])
         return found
+
+    def _root(self, x: np.ndarray, edge: float) -> np.ndarray:
+        """Root of rr and tt beside an edge, (2, n), in plane strain: of p inside, of f p outside."""
+        nu = self.compliance.solid.materials[0][1]
+        p, mirrored = (self.pressure(at, 0 * x) for at in (x, 2 * edge - x))
+        rr = 2 * self.friction * np.sign(x - edge) * mirrored - (1 - 2 * nu) / (1 - nu) * p
+        return np.array([rr, nu * rr])
 
 
 def _taper(share: np.ndarray) -> np.ndarray:
@@ -293,12 +299,12 @@ def _taper(share: np.ndarray) -> np.ndarray:
 
 
 def _powers(away: np.ndarray, halves: int) -> np.ndarray:
-    """1, d, d^2, and d^(k - 1/2) for k = 1, .. on either side of the edge, (n, powers); d < 0 is inside.
+    """1, d, d^2, and d^(k + 1/2) for k = 1, .. on either side of the edge, (n, powers); d < 0 is inside.
 
     The layers, and all of the pressure but what is at the edge, give a stress that is smooth across it.
     """
     sides = np.maximum([-away, away], 0)
-    roots = [side ** (k + 0.5) for k in range(halves) for side in sides]
+    roots = [side ** (k + 1.5) for k in range(halves) for side in sides]
     return np.stack([np.ones(away.size), away, away**2, *roots], axis=1)
 
 

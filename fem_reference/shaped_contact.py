@@ -18,7 +18,7 @@ from .harmonic_compliance import DENSITY, harmonic_compliance
 from .indenter_height import Height, Indenter, indenter_height
 from .levels import NotConverged
 from .mesh import surface_size
-from .off_axis import OffAxisFields, PressedSolid, discretised
+from .off_axis import WITHIN, OffAxisFields, PressedSolid, discretised
 from .scaling import Coatings, LayeredSolid, Units
 from .star_contact import Corrected, StarPressure, corrected
 from .validation import check_choice, check_materials, check_positive, check_proportions
@@ -107,7 +107,7 @@ class ShapedContact(PressedSolid):
         h = length * np.maximum(RESOLVED * surface_size(fields.surface, away / length), fields.least / 3)
         k = np.maximum(h, np.hypot(x, y) * np.pi / (2 * fields.compliance.last))
         nu = fields.compliance.solid.materials[0][1]
-        on_series = (y == 0) & (away < length * fields.least)
+        on_series = (y == 0) & (away < length * WITHIN * fields.least)
         missed = []
         for i, j in ((h, 0 * h), (0 * k, k)):
             for beside in (-0.5, 0.0, 0.5):  # it changes sign next to the edge

@@ -30,7 +30,7 @@ DEGREE = 2
 RADIAL = 10  # points between two vertices of the surface
 ANGULAR = 24, 1.6  # points on an arc inside the contact: some, and more for each harmonic
 SAMPLES = 256  # on half a circle, between which an arc begins or ends
-WAVES = 64  # of the cosine series of 1/R^2: two for an ellipse; 32 miss the end of a coated one by 4e-5
+WAVES, LEFT_OUT = 128, 1e-12  # of the cosine series of 1/R^2; 64 leave 1e-3 of p0 at the end of a coated one
 BISECTIONS = 48
 STEPS, ENOUGH, CLOSE = 8, 3e-7, 1e-4  # change of the edge in the last step, and in one that failed
 TOUCHING = 1e-5  # of the largest pressure on the axis of symmetry: p above counts as contact
@@ -76,7 +76,8 @@ class StarPressure:
             low, high = np.where(loaded, r, low), np.where(loaded, high, r)
         k = np.arange(WAVES)
         series = np.cos(k[:, None] * tau) @ low**-2 * np.where(k > 0, 2, 1) / tau.size
-        empty = cls(given, centre, fold, series, np.zeros(0), np.zeros(0))
+        contour = np.polynomial.chebyshev.chebtrim(series, LEFT_OUT * series[0])
+        empty = cls(given, centre, fold, contour, np.zeros(0), np.zeros(0))
         return replace(
             empty, edge=np.zeros(len(empty.waves)), coefficients=np.zeros(len(empty.terms(DEGREE)))
         )

@@ -31,9 +31,9 @@ from scipy.ndimage import maximum_filter
 Array = NDArray[np.floating]
 
 ROUND = (0,)  # harmonics of a contact that is round,
-EVEN = (0, 2, 4, 6, 8, 10)  # even in x and in y,
+EVEN = (0, 2, 4, 6, 8, 10, 12)  # even in x and in y, the last for the ends of a long ellipse on a stiff film,
 HALF = tuple(range(9))  # even in y, beside its mirror image,
-ACROSS = (0, 1, 2, 3, 4, 6, 8, 9, 10)  # even in y,
+ACROSS = (0, 1, 2, 3, 4, 6, 8, 9, 10, 12)  # even in y,
 FULL = (*ACROSS, *(-n for n in ACROSS[1:]))  # any
 DAMPING = 0.8  # share of the first step of a fit
 FADED = 0.15, 0.4  # t over which a pressure fitted near the edge alone, and its fit, fade to the inside

@@ -360,8 +360,8 @@ class Solution:
         width = min(TAPER * self.diagnostics.patch_size / min(shapes[0].axes), 1.0) if shapes else 0.0
         s = 1 - width * np.linspace(1.0, 0.0, 33) ** 2
         p = [one.pressure(*one.on_ray(s, np.zeros(s.size))) for one in shapes]
-        last, before = [*(float(np.abs(a - b).max()) for a, b in pairwise(p)), 0.0, 0.0][:2]
-        return unsettled(last, before)
+        changes = [float(np.abs(a - b).max()) for a, b in pairwise(p)]
+        return unsettled(*changes, self._level.ripple) if len(changes) == 2 else sum(changes)
 
     def _misfit(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Error [Pa] by what the shape of the pressure misses inside."""

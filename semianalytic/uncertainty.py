@@ -38,9 +38,9 @@ def safety(ratio: float) -> float:
     return float(max(1.0, 1 / (ratio**1.5 - 1)))
 
 
-def unsettled(last: float, before: float) -> float:
-    """The last change, up to four times where it falls by less than half and more is to come."""
-    return last * min(max(1.0, (2 * last / before) ** 2), 4.0) if before else last
+def unsettled(last: float, before: float, ripple: float = 0.0) -> float:
+    """The last change, up to four times where it falls by less than half, but for a ripple of the patches."""
+    return last * min(max(1.0, (2 * last / (before + ripple)) ** 2), 4.0) if before else last
 
 
 @dataclass(frozen=True)
