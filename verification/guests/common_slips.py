@@ -128,10 +128,6 @@ def _near_edge(result: CaseResult) -> dict[str, NDArray[np.bool_]]:
     return {line: np.asarray(np.abs(np.abs(x) - a) < EDGE * a) for line, x in lines.items()}
 
 
-def _along_x(line: str) -> bool:
-    return line.removeprefix(ON_BALL).startswith(("surface", "interface"))
-
-
 def _slips(
     result: CaseResult, exact: Values, given: dict[Key, Array], wrong: list[Key]
 ) -> Iterator[CommonSlip]:
@@ -267,7 +263,7 @@ def _moved(
         found: Values = {}
         for (q, line), (v, known) in values.items():
             sign = signs.get(q, 1.0)
-            if _along_x(line):
+            if line.removeprefix(ON_BALL).startswith(("surface", "interface")):
                 x = places[line]
                 v = _at(at(x), x, v)
             elif line != "contact" and not (still and line.endswith("axis")):

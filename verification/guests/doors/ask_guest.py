@@ -55,7 +55,8 @@ def answered(
                     programs[key] = Program(command_of(guest), guest.folder)
                 replies.append(programs[key].ask(question, guest.time_limit))
     except ProtocolError as error:
-        replies.append(Solved(_failed(questions[len(replies)], str(error)), 0.0))
+        failed = Answer(protocol=VERSION, id=questions[len(replies)].id, error=str(error)[:2000])
+        replies.append(Solved(failed, 0.0))
     if key in programs and (at_work is None or replies[-1].answer.error is not None):
         programs.pop(key).end(GRACE if replies[-1].answer.error is None else 0.0)
     return replies
@@ -96,7 +97,3 @@ def _read(data: dict[str, Any]) -> Replies:
 def _none(case: Subject, reason: str, seconds: float) -> Replies:
     answer = Answer(protocol=VERSION, id=case.name, error=reason)
     return [Solved(answer, seconds)]
-
-
-def _failed(question: Question, reason: str) -> Answer:
-    return Answer(protocol=VERSION, id=question.id, error=reason[:2000])
