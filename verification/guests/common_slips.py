@@ -7,6 +7,7 @@ changes but cannot predict (a mirrored value on an oblique line) counts little, 
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import cache
 from math import isclose, log
 
 import numpy as np
@@ -76,14 +77,16 @@ def explanation(result: CaseResult, guest: str, wrong: list[Key]) -> Explanation
     near = _near_edge(result)
     slips = list(_slips(result, exact, given, wrong))
 
-    def misfits(chosen: tuple[int, ...]) -> tuple[dict[Key, float], Values]:
-        values = exact
-        for number in chosen:
-            values = slips[number].change(values)
-        return {key: _misfit(g, *values[key], near.get(key[1])) for key, g in given.items()}, values
+    @cache
+    def changed(chosen: tuple[int, ...]) -> Values:
+        return slips[chosen[-1]].change(changed(chosen[:-1])) if chosen else exact
+
+    def misfits(chosen: tuple[int, ...]) -> dict[Key, float]:
+        values = changed(chosen)
+        return {key: _misfit(g, *values[key], near.get(key[1])) for key, g in given.items()}
 
     def cost(chosen: tuple[int, ...]) -> float:
-        return PRICE * len(chosen) + sum(log(max(m, FLOOR)) for m in misfits(chosen)[0].values())
+        return PRICE * len(chosen) + sum(log(max(m, FLOOR)) for m in misfits(chosen).values())
 
     beam: dict[tuple[int, ...], float] = {(): cost(())}
     best: tuple[int, ...] = ()
@@ -94,16 +97,16 @@ def explanation(result: CaseResult, guest: str, wrong: list[Key]) -> Explanation
         if not kept or costs[kept[0]] >= beam[best]:
             break
         beam, best = {one: costs[one] for one in kept}, kept[0]
-    after, values = misfits(best)
+    after = misfits(best)
     found = []
     for number in best:
         without = misfits(tuple(n for n in best if n != number))
         alone = slips[number].change(exact)
         vague = {key for key in wrong if not alone[key][1]}
-        places = [key for key in wrong if after[key] <= EXPLAINED * without[0][key] or key in vague]
+        places = [key for key in wrong if after[key] <= EXPLAINED * without[key] or key in vague]
         if any(key not in vague for key in places):
             found.append((slips[number], tuple(places)))
-    return Explanation(tuple(found), values if found else exact)
+    return Explanation(tuple(found), changed(best) if found else exact)
 
 
 def _misfit(g: Array, p: Array, known: bool, near: NDArray[np.bool_] | None) -> float:
