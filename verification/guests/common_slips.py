@@ -101,7 +101,7 @@ def explanation(result: CaseResult, guest: str, wrong: list[Key]) -> Explanation
     found = []
     for number in best:
         without = misfits(tuple(n for n in best if n != number))
-        alone = slips[number].change(exact)
+        alone = changed((number,))
         vague = {key for key in wrong if not alone[key][1]}
         places = [key for key in wrong if after[key] <= EXPLAINED * without[key] or key in vague]
         if any(key not in vague for key in places):
