@@ -218,10 +218,10 @@ def _triangulate(
             sizes.append(f"{even}+{_literal(_BEYOND)}*Max(0,x)")
             least, rate = _literal(_LEAST * grading.surface * scale), _literal(_RATE * grading.surface)
             for r in grading.edges:
-                away = f"Sqrt((Sinh(x)+{_literal((1 - r) * scale)})^2+Sinh(y)^2)"
-                sizes.append(f"Max({least},{rate}*{away})/Cosh(Min(x,0))")
+                along = f"(Sinh(x)+{_literal((1 - r) * scale)})^2"
+                sizes.append(f"Max({least},{rate}*Sqrt({along}+Sinh(y)^2))/Cosh(Min(x,0))")
                 for _, lower in films:
-                    buried = f"{_literal(_BURIED * grading.surface)}*{away.replace('y', _literal(lower))}"
+                    buried = f"{_literal(_BURIED * grading.surface)}*Sqrt({along}+Sinh({_literal(lower)})^2)"
                     sizes.append(f"{buried}/Cosh(Min(x,0))+0.4*Abs(y-({_literal(lower)}))")
         for upper, lower in films:
             away = f"Max(0,Max(y-({_literal(lower)}),{_literal(upper)}-y))"

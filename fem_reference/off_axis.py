@@ -221,8 +221,7 @@ class OffAxisFields:
     def __call__(self, points: SolidPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Displacement (3, n) and stress (6, n), cylindrical, and what the last third of harmonics adds.
 
-        Next to one of the ``edges`` the stress is that of a series, to which that counts as much as one more
-        power of it changes.
+        Next to one of the ``edges`` both are those of a series, and what one more power changes counts too.
         """
         at = points.located
         u, s, late_u, late_s = self._summed(points)
@@ -233,8 +232,8 @@ class OffAxisFields:
             if near.size:
                 away = np.sign(edge) * (x[near] - edge) / self.least
                 more, fewer = ((_powers(away, n) @ c).T for n, c in zip(HALVES, self._series[k], strict=True))
-                s[:2, near] = more + self._root(x[near], edge)
-                late_s[:2, near] += more - fewer
+                s[:2, near] = more[:2] + self._root(x[near], edge)
+                late_s[:2, near] = np.abs(more - fewer)[:2] + np.abs(more[2:])
         p = np.where(surface, self.pressure(at.r_given * points.cos, at.r_given * points.sin), 0.0)
         nu, f = self.compliance.solid.materials[0][1], self.friction
         s[:2] -= nu / (1 - nu) * p
@@ -264,13 +263,14 @@ class OffAxisFields:
         m = np.array([field.harmonic for field in self.fields])
         waves = np.stack([np.cos(np.outer(m, theta)), np.sin(np.outer(m, theta))], axis=1)
         late = m > 2 / 3 * self.compliance.last
-        u = np.tensordot([late | True, late], u * waves[:, [0, 1, 0]], 1)
+        u = np.tensordot([np.ones(m.size), late], u * waves[:, [0, 1, 0]], 1)
         tapered = _taper(m / self.compliance.last), late
         return u, np.tensordot(tapered, strain * waves[:, [0, 0, 0, 0, 1, 1]], 1)
 
     @cached_property
     def _series(self) -> list[list[np.ndarray]]:
-        """Coefficients (powers, 2) of rr and tt less ``_root`` beside each edge, with as many as ``HALVES``.
+        """Coefficients (powers, 4) beside each edge, with as many as ``HALVES``: of rr and tt less ``_root``,
+        and of what the last third of harmonics adds.
 
         Fitted where triangles are no larger than their distance from the edge. A root fitted errs by 1e-3.
         """
@@ -279,8 +279,8 @@ class OffAxisFields:
         for edge in self.edges:
             x, zero = edge + np.sign(edge) * away, np.zeros(away.size)
             located = self.discretisation.locator.points(np.abs(x), zero, zero.astype(int))
-            _, s, _, _ = self._summed(SolidPoints(located, np.sign(x), zero, x.shape))
-            rest = (s[:2] - self._root(x, edge)).T
+            _, s, _, late_s = self._summed(SolidPoints(located, np.sign(x), zero, x.shape))
+            rest = np.concatenate([s[:2] - self._root(x, edge), late_s[:2]]).T
             terms = (_powers(away / self.least, n) for n in HALVES)
             found.append([np.linalg.lstsq(one, rest, rcond=None)[0] for one in terms])
         return found
@@ -374,6 +374,10 @@ class PressedSolid:
         lifted = float((weight * height(x, y)).sum() / weight.sum())
         return lifted + self._fine.work / self._fine.load * self._units.displacement
 
+    def _matching(self, x: Any, y: Any) -> tuple[Any, Any]:
+        """Points [m] of the companion that are compared with x, y."""
+        return x, y
+
     def _sums(
         self, x: Any, y: Any, z: Any, layer: int | None, uncertainty: bool, which: int
     ) -> tuple[tuple[np.ndarray, np.ndarray], tuple[int, ...]]:
@@ -383,7 +387,8 @@ class PressedSolid:
         values = []
         for fields in (self._fine, self._coarse) if uncertainty else (self._fine,):
             assert fields is not None
-            points = solid_points(fields.discretisation.locator, self._units.length, x, y, z, layer)
+            at = (x, y) if fields is self._fine else self._matching(x, y)
+            points = solid_points(fields.discretisation.locator, self._units.length, *at, z, layer)
             found = fields(points)
             turn = tensor if which else cartesian
             values.append([turn(found[k], points.cos, points.sin) for k in (which, 2 + which)])

@@ -7,7 +7,7 @@ corrections do not reach is the other method's, and what that leaves of the gap 
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -79,6 +79,12 @@ class ShapedContact(PressedSolid):
     height: Height = field(repr=False)
     stiffness: float | None = None
     stiffness_uncertainty: float | None = None
+    relative: bool = False
+
+    @property
+    def relative_to_edge(self) -> "ShapedContact":
+        """The same for points meant as shares of the way to the edge, of which no edge is uncertain."""
+        return replace(self, relative=True)
 
     def stress_with_uncertainty(
         self, x: Any, y: Any, z: Any, layer: int | None = None, uncertainty: bool = True
@@ -151,10 +157,18 @@ class ShapedContact(PressedSolid):
         """Uncertainty of the pressure [Pa]: the change from the companion, and that of the peak."""
         if self._coarse is None:
             raise ValueError("this solution has no uncertainty; solve with estimate_uncertainty=True")
-        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        L = self._units.length
-        other = np.asarray(self._coarse.pressure(x / L, y / L)) * self._units.pressure
+        at = (v / self._units.length for v in self._matching(x, y))
+        other = np.asarray(self._coarse.pressure(*at)) * self._units.pressure
         return SAFETY * np.abs(self.pressure(x, y) - other) + self._floor
+
+    def _matching(self, x: Any, y: Any) -> tuple[Any, Any]:
+        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        if not self.relative:
+            return x, y
+        pair, L = [one.pressure for one in (self._fine, self._coarse) if one], self._units.length
+        fine, other = (one for one in pair if isinstance(one, StarPressure))
+        X, Y = fine.matching(other, x / L, y / L)
+        return L * X, L * Y
 
     @property
     def _floor(self) -> float:

@@ -119,6 +119,13 @@ class StarPressure:
         added = np.tensordot(self.coefficients, self.polynomials(np.minimum(s, 1.0), tau, DEGREE), 1)
         return np.where(s < 1, np.maximum(p + np.sqrt(np.maximum(1 - s**2, 0)) * added, 0), 0)
 
+    def matching(self, other: "StarPressure", x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Points as far from the edge of the ``other`` as x, y are from this; inside by shares of the way."""
+        s, tau = self._polar(x, y)
+        r = s * self.edge_at(tau) + np.minimum(s, 1) * (other.edge_at(tau) - self.edge_at(tau))
+        sides = np.where(x < 0, -1, 1) if self.centre else 1
+        return sides * (other.centre + r * np.cos(tau)), np.where(y < 0, -1, 1) * r * np.sin(tau)
+
     def quadrature(self, compliance: HarmonicCompliance, last: int) -> "Quadrature":
         """Points on half circles about the origin between the vertices, for harmonics to ``last``.
 

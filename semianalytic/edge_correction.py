@@ -26,6 +26,9 @@ MISFIT, COARSE_MISFIT = 0.3, 2.0
 LOST = 0.2  # of the load, the most that constant patches miss of a pressure with a smooth edge
 INNER = 3e-3  # of the peak, that f may miss inside: ellipses 3e-5, a kink of the indenter's slope 0.1
 OUTER_TERMS = 6  # polynomials of a pressure that is fitted near the edge alone
+# the highest harmonic of a shape fitted to patches alone, or patches between centre and edge for each; finer
+# grids have all, as has a contact without a plane of symmetry
+LOW, WAVES = 6, 4.0
 NARROW = 5  # patches between centre and edge, below which the edge is not resolved
 FEW_PATCHES = 32  # between centre and edge, of a grid whose rejection of a shape the next one tries again
 # polynomials: of an uncoated body; of a layer, the second number for each of asinh(1/e)
@@ -139,7 +142,8 @@ def _start(problem: LevelProblem, p: Array) -> Shape | None:
     both = problem.body.response
     layer = LAYER * both.depth / min(shape.axes) if both else np.inf
     shape = replace(shape, layer=layer if layer < THICK else np.inf, twin=twin)
-    return shape.with_terms(_terms(shape, grid.d))
+    highest = np.inf if harmonics == edge_shape.FULL else max(LOW, min(shape.axes) / grid.d / WAVES)
+    return shape.with_terms(_terms(shape, grid.d), highest)
 
 
 def _is_island(loaded: NDArray[np.bool_]) -> bool:

@@ -229,12 +229,16 @@ class Shape:
         A, B = self.axes
         return replace(self, axes=(A + shift, B + shift))
 
-    def with_terms(self, terms: int) -> "Shape":
-        """The same with as many polynomials, those that it lacks with coefficients of zero."""
-        b = np.zeros((terms, len(self.harmonics)))
-        held = min(terms, len(self.coefficients))
-        b[:held] = self.coefficients[:held]
-        return replace(self, coefficients=b)
+    def with_terms(self, terms: int, highest: float = np.inf) -> "Shape":
+        """The same with as many polynomials, and all harmonics of its symmetry up to the ``highest``."""
+        families = (HALF,) if self.twin else (ROUND, EVEN, ACROSS, FULL)
+        family = next(one for one in families if {*self.harmonics} <= {*one})
+        wanted, held = tuple(n for n in family if abs(n) <= highest), min(terms, len(self.coefficients))
+        shared = {*wanted} & {*self.harmonics}
+        to, of = ([n in shared for n in some] for some in (wanted, self.harmonics))
+        b, contour = np.zeros((terms, len(wanted))), np.zeros(len(wanted))
+        b[:held, to], contour[to] = self.coefficients[:held, of], self.contour[of]
+        return replace(self, harmonics=wanted, contour=contour, coefficients=b)
 
 
 def start(pressure: Array, x: Array, y: Array, harmonics: tuple[int, ...], terms: int, area: float) -> Shape:
@@ -316,7 +320,16 @@ def fitted(
     each one represents.  patch [m] : the side.  fixed_edge : change the coefficients b alone.
     """
     k, across = len(shape.harmonics), min(shape.axes)
-    normal, right = _normal_equations(shape, pressure, x, y, deflection, weight, patch, fixed_edge)
+    columns = shape.columns(x, y, BLUNT * patch / across)[: -k if fixed_edge else None]
+    left = pressure - replace(shape, outside=False).pressure(x, y)
+    if shape.outside:
+        window = np.clip((FADED[1] - shape.polynomials(x, y)[0]) / (FADED[1] - FADED[0]), 0, 1)
+        columns, left = columns * window, left * window
+    loaded = (left != 0) | (columns[0] != 0)  # where either pressure acts
+    deflected = np.stack([deflection(column)[loaded] for column in columns])
+    if weight is not None:
+        deflected *= weight[loaded]
+    normal, right = deflected @ columns[:, loaded].T, deflected @ left[loaded]
     size = np.sqrt(np.diag(normal))
     normal = (normal + normal.T) / 2 / np.outer(size, size)
     scaled = np.linalg.lstsq(normal, right / size, rcond=1e-14)[0]
@@ -334,31 +347,6 @@ def fitted(
     taken[-k:] *= min(1.0, patch / moved) if moved else 1.0
     shape = _between_centres(shape.changed(taken), pressure > 0, x, y, patch)
     return shape, Step(change, scaled, share)
-
-
-def _normal_equations(
-    shape: Shape,
-    pressure: Array,
-    x: Array,
-    y: Array,
-    deflection: Callable[[Array], Array],
-    weight: Array | None,
-    patch: float,
-    fixed_edge: bool,
-) -> tuple[Array, Array]:
-    """phi' K phi and phi' K e; arguments as in `fitted`."""
-    count = len(shape.harmonics) * (len(shape.coefficients) + (0 if fixed_edge else 1))
-    columns = shape.columns(x, y, BLUNT * patch / min(shape.axes))[:count]
-    left = pressure - replace(shape, outside=False).pressure(x, y)
-    if shape.outside:
-        window = np.clip((FADED[1] - shape.polynomials(x, y)[0]) / (FADED[1] - FADED[0]), 0, 1)
-        columns, left = columns * window, left * window
-    # where either pressure acts
-    loaded = (left != 0) | (columns[0] != 0)
-    deflected = np.stack([deflection(column)[loaded] for column in columns])
-    if weight is not None:
-        deflected *= weight[loaded]
-    return deflected @ columns[:, loaded].T, deflected @ left[loaded]
 
 
 def _between_centres(shape: Shape, loaded: NDArray[np.bool_], x: Array, y: Array, patch: float) -> Shape:

@@ -55,6 +55,18 @@ def test_the_stress_at_the_end_of_an_axis_is_johnsons(radii):
     assert stress[1, 1] == pytest.approx(-radial / exact.peak_pressure, abs=3e-4)
 
 
+def test_beside_its_own_edge_the_pressure_is_as_uncertain_as_it_is_wrong():
+    found = solved(EXACT.pressure, surface=0.06, estimate_uncertainty=True)
+    share, exact = np.array([0.97, 0.997, 0.9997]), EXACT.axes[0]
+    p = EXACT.pressure(share * exact, 0.0)
+    at_same_share = np.abs(found.pressure(share * found.extent_x) - p)
+    at_same_place = np.abs(found.pressure(share * exact) - p)
+    relative = found.relative_to_edge.pressure_uncertainty(share * found.extent_x)
+    assert np.all(at_same_share <= relative)
+    assert np.all(at_same_place <= found.pressure_uncertainty(share * exact))
+    assert np.all(relative < 0.5 * found.pressure_uncertainty(share * exact)), "the edge counts twice"
+
+
 def test_a_start_turned_by_a_right_angle_is_not_taken_for_the_contact():
     turned = pressed_ellipsoid(*RADII[::-1], LOAD, *STEEL).pressure
     try:

@@ -167,7 +167,8 @@ def test_a_reader_that_has_seen_enough_changes_no_file_and_no_exit_code(tmp_path
 
 def test_ctrl_c_keeps_what_was_done_and_says_so(tmp_path):
     (tmp_path / "quick.toml").write_text(QUICK)
-    words = ["run", "quick.toml", "05_ratio_4", "--jobs", "2", "--output", "out"]
+    long = "26_ellipse_soft_across"
+    words = ["run", "quick.toml", long, "--jobs", "2", "--output", "out"]
     process = subprocess.Popen(
         [*COMMAND, *words],
         cwd=tmp_path,
@@ -181,13 +182,14 @@ def test_ctrl_c_keeps_what_was_done_and_says_so(tmp_path):
     while not kept.exists() and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.05)
     time.sleep(0.3)
+    assert process.poll() is None, "ended before the signal"
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130, said
     assert "1 of 2" in said
     assert "--resume" in said
     assert "Traceback" not in said
-    assert not (tmp_path / "out" / "cases" / "05_ratio_4.json").exists()
+    assert not (tmp_path / "out" / "cases" / f"{long}.json").exists()
     written = kept.stat().st_mtime_ns
     again = coatcheck("run", "quick.toml", "--output", "out", "--resume", "--json", cwd=tmp_path)
     assert again.returncode == 0, again.stderr
