@@ -153,10 +153,7 @@ def undeformed_gap(r: np.ndarray, curvature: float = 0.0) -> np.ndarray:
 
 
 def solve_at_radius(
-    solid: LayeredSolid,
-    discretisation: Discretisation,
-    ball: Body | None = None,
-    curvature: float = 0.0,
+    solid: LayeredSolid, discretisation: Discretisation, ball: Body | None = None, curvature: float = 0.0
 ) -> FixedRadiusContact:
     """Solve the contact whose edge is the mesh's contact radius.
 

@@ -141,12 +141,7 @@ class HarmonicCompliance:
 
 
 def harmonic_compliance(
-    solid: LayeredSolid,
-    d: Discretisation,
-    last: int,
-    fold: int,
-    density: float = DENSITY,
-    inner: float = 0.0,
+    solid: LayeredSolid, d: Discretisation, last: int, fold: int, density: float = DENSITY, inner: float = 0.0
 ) -> HarmonicCompliance:
     """Compliance to pressures between the radius ``inner`` and the mesh's contact radius.
 
@@ -184,9 +179,7 @@ def _weights(solved: tuple[float, ...], m: int) -> list[tuple[int, float]]:
 
 
 def _superposed(
-    solved: tuple[float, ...],
-    loads: dict[int, np.ndarray],
-    respond: Callable[[int, np.ndarray], np.ndarray],
+    solved: tuple[float, ...], loads: dict[int, np.ndarray], respond: Callable[[int, np.ndarray], np.ndarray]
 ) -> dict[int, np.ndarray]:
     """Field vector of every m under its ``loads``, (.., nodes).
 

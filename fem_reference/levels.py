@@ -44,13 +44,7 @@ History = list[tuple[str, float, float]]  # level, contact radius, load of every
 
 
 def solve_levels(
-    solids: Solids,
-    load: float,
-    *,
-    order: int,
-    size: float,
-    with_companion: bool,
-    curvature: float = 0.0,
+    solids: Solids, load: float, *, order: int, size: float, with_companion: bool, curvature: float = 0.0
 ) -> tuple[FixedRadiusContact, FixedRadiusContact | None, History]:
     """Find the contact radius at ``load``, each level starting from the result of the one before.
 

@@ -71,10 +71,7 @@ class Constrained:
 
 
 def constrained_solve(
-    K: sp.csc_matrix,
-    given: np.ndarray,
-    fixed: np.ndarray,
-    load: np.ndarray | None = None,
+    K: sp.csc_matrix, given: np.ndarray, fixed: np.ndarray, load: np.ndarray | None = None
 ) -> Constrained:
     """Solve K u = load with u = ``given`` at the unknowns ``fixed``; several columns share one factorisation.
 

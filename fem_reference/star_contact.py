@@ -277,11 +277,7 @@ class Corrected:
 
 
 def corrected(
-    compliance: HarmonicCompliance,
-    given: StarPressure,
-    height: Pressure,
-    load: float,
-    last: int,
+    compliance: HarmonicCompliance, given: StarPressure, height: Pressure, load: float, last: int
 ) -> Corrected:
     """Pressure under which the gap below an indenter of ``height`` (x, y) vanishes; scaled units.
 
@@ -315,8 +311,6 @@ def corrected(
             break
         share = min(1.0, LARGEST / size)
         pressure = replace(
-            pressure,
-            coefficients=pressure.coefficients + share * x[:n],
-            edge=pressure.edge + share * x[n:-1],
+            pressure, coefficients=pressure.coefficients + share * x[:n], edge=pressure.edge + share * x[n:-1]
         )
     return Corrected(compliance, pressure, float(x[-1]), step, size < CLOSE)

@@ -14,12 +14,7 @@ Array = NDArray[np.floating]
 
 
 def stress(
-    levels: Sequence[Level],
-    body: Body,
-    x: ArrayLike,
-    y: ArrayLike,
-    z: ArrayLike,
-    layer: int | None,
+    levels: Sequence[Level], body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
 ) -> Array:
     """Stress tensor [Pa] of each level at points [m], broadcast; shape (len(levels), 3, 3) + points.
 

@@ -46,14 +46,7 @@ BLOCK = NEAR + 2  # offsets computed, two more for the fourth difference
 
 
 def stress(
-    x: ArrayLike,
-    y: ArrayLike,
-    z: ArrayLike,
-    layer: ArrayLike,
-    *,
-    grid_x: Array,
-    pressure: Array,
-    body: Body,
+    x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: ArrayLike, *, grid_x: Array, pressure: Array, body: Body
 ) -> Array:
     """Stress at points (x, y, z) of the layers named, under pressure p with traction q = f p in +x.
 
@@ -71,14 +64,7 @@ def tensor(components: Array) -> Array:
 
 
 def displacement(
-    x: ArrayLike,
-    y: ArrayLike,
-    z: ArrayLike,
-    layer: ArrayLike,
-    *,
-    grid_x: Array,
-    pressure: Array,
-    body: Body,
+    x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: ArrayLike, *, grid_x: Array, pressure: Array, body: Body
 ) -> Array:
     """Displacement at points (x, y, z); arguments as in `stress`.
 

@@ -104,10 +104,7 @@ def test_run_with_strange_names_writes_into_its_output_directory_only(tmp_path):
         path for path in tmp_path.rglob("*") if tmp_path / "here" / "out" not in (path, *path.parents)
     )
     assert after == before
-    assert sorted(path.stem for path in (tmp_path / "here" / "out" / "cases").iterdir()) == [
-        "-rf",
-        "..",
-    ]
+    assert sorted(path.stem for path in (tmp_path / "here" / "out" / "cases").iterdir()) == ["-rf", ".."]
 
 
 @pytest.mark.parametrize(

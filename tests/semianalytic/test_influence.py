@@ -68,8 +68,7 @@ def test_split_coefficients_are_the_quadrature(ratio, h, layers):
 
 
 @pytest.mark.parametrize(
-    ("ratio", "h"),
-    [(10.0, 5.0), (4.0, 30.0), (0.1, 300.0), pytest.param(0.1, 0.2, marks=pytest.mark.slow)],
+    ("ratio", "h"), [(10.0, 5.0), (4.0, 30.0), (0.1, 300.0), pytest.param(0.1, 0.2, marks=pytest.mark.slow)]
 )
 def test_far_coefficients_keep_their_digits(ratio, h):
     """1e-9 of that of the substrate at the same offset; h / d = 5 at 800 is h / d = 50 at 8000."""

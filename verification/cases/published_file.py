@@ -10,14 +10,7 @@ from typing import Any
 
 from verification.cases.case_file import Case, parse_case
 from verification.cases.published_schema import LayerEntry, ProblemEntry, PublishedFile
-from verification.cases.published_table import (
-    FOLDER,
-    UNITS,
-    PublishedColumn,
-    columns_of,
-    read_table,
-    si_of,
-)
+from verification.cases.published_table import FOLDER, UNITS, PublishedColumn, columns_of, read_table, si_of
 from verification.cases.toml_file import CaseError, load_toml, read_bounded, read_toml
 from verification.cases.unit_numbers import of_file
 from verification.judging.verdict import Claim

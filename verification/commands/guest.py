@@ -20,13 +20,7 @@ from verification.commands.common.known_folders import PACKAGE
 from verification.commands.common.named_files import SHIPPED, path_of, require_distinct
 from verification.commands.common.shared_options import AsJson, Flag, Jobs, Quiet
 from verification.commands.common.task_progress import run_info, solve, worker_count
-from verification.commands.common.terminal import (
-    STYLE,
-    named_table,
-    one_line,
-    print_json,
-    print_out,
-)
+from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
 from verification.guests.exam_subjects import exact_profile, subject_of
 from verification.guests.examination import Examined, examined, outcome_counts, packed_cases
 from verification.guests.guest_description import FILE, Guest, parse_guest, read_guest

@@ -30,13 +30,7 @@ from verification.commands.common.shared_options import (
     Resume,
     Strict,
 )
-from verification.commands.common.task_progress import (
-    kept_results,
-    kept_study,
-    run_info,
-    solve,
-    worker_count,
-)
+from verification.commands.common.task_progress import kept_results, kept_study, run_info, solve, worker_count
 from verification.commands.common.terminal import print_error, print_json, print_warnings
 from verification.commands.common.terminal_bar import require_gmsh
 from verification.credibility import accuracy_study

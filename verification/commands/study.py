@@ -18,12 +18,7 @@ from verification.commands.common.command_error import STOPPED, CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.named_files import path_of
 from verification.commands.common.shared_options import AsJson, Jobs, Output, Quiet, Strict
-from verification.commands.common.terminal import (
-    print_error,
-    print_json,
-    print_out,
-    print_warnings,
-)
+from verification.commands.common.terminal import print_error, print_json, print_out, print_warnings
 from verification.commands.common.terminal_bar import progress_bar, require_gmsh
 from verification.judging.verdict import Outcome
 from verification.regression.run_exit_codes import EXIT

@@ -151,10 +151,7 @@ def refined_mesh(
 
 
 def _refined(
-    empty: Refinement,
-    problem: CoatedContact,
-    solve: Callable[..., Any],
-    steps: Mapping[str, dict[str, Any]],
+    empty: Refinement, problem: CoatedContact, solve: Callable[..., Any], steps: Mapping[str, dict[str, Any]]
 ) -> Refinement:
     levels: list[Level] = []
     failure = None

@@ -73,8 +73,7 @@ class GuestFile(Strict):
     supports: Supports = Supports()
     units: Units = Units()
     refine: Annotated[
-        dict[str, Annotated[list[Level], Field(min_length=3, max_length=12)]],
-        Field(max_length=1),
+        dict[str, Annotated[list[Level], Field(min_length=3, max_length=12)]], Field(max_length=1)
     ] = Field(default_factory=dict)
     known: Annotated[dict[str, Text], Field(default_factory=dict, max_length=1000)]
 

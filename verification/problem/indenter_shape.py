@@ -7,11 +7,7 @@ from typing import Any
 import numpy as np
 
 Indenter = tuple[str, tuple[float, ...]]  # shape and its numbers, SI
-SHAPES = {
-    "ellipsoid": ("R_x", "R_y"),
-    "asperities": ("distance",),
-    "lobes": ("lobes", "amplitude", "at"),
-}
+SHAPES = {"ellipsoid": ("R_x", "R_y"), "asperities": ("distance",), "lobes": ("lobes", "amplitude", "at")}
 
 
 def require_shape(indenter: Indenter) -> None:

@@ -24,11 +24,7 @@ def exit_code(results: Sequence["CaseResult"]) -> int:
 
 
 def run_code(
-    results: Sequence["CaseResult"],
-    beside: "Regression",
-    *,
-    passed: bool,
-    studies: Sequence[Outcome] = (),
+    results: Sequence["CaseResult"], beside: "Regression", *, passed: bool, studies: Sequence[Outcome] = ()
 ) -> int:
     """That of the worst outcome; where all agree that of the self-tests, the manifest, the baseline.
 

@@ -17,11 +17,7 @@ from verification.page.number_text import seconds
 from verification.page.page_parts import Part, Section
 from verification.regression import baseline_section
 from verification.regression.baseline_change import regression_json
-from verification.report.credibility import (
-    credibility_statement,
-    detection_sections,
-    model_section,
-)
+from verification.report.credibility import credibility_statement, detection_sections, model_section
 from verification.report.report_material import Material
 from verification.report.sections import (
     accuracy_section,

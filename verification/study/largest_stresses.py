@@ -16,16 +16,7 @@ from scipy.optimize import minimize_scalar
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.quantity import von_mises
-from verification.study.friction_planes import (
-    XX,
-    XZ,
-    ZZ,
-    Parts,
-    Plane,
-    inner_planes,
-    outer_planes,
-    stress_at,
-)
+from verification.study.friction_planes import XX, XZ, ZZ, Parts, Plane, inner_planes, outer_planes, stress_at
 
 Measure = Callable[[Array], Array]
 

@@ -389,10 +389,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
 
 
 def _warnings(
-    bare: CoatedContact,
-    ball: Ball | None,
-    thicknesses: tuple[float, ...],
-    checked: _StudyFile,
+    bare: CoatedContact, ball: Ball | None, thicknesses: tuple[float, ...], checked: _StudyFile
 ) -> tuple[str, ...]:
     """Those of the thinnest coating and the thickest, each line once."""
     p = checked.problem

@@ -88,16 +88,10 @@ def test_nothing_is_told_of_the_shipped_files():
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        (
-            {"substrate": (0.99e6, 0.3), "coatings": (), "load": 1e-3},
-            "substrate.E",
-        ),
+        ({"substrate": (0.99e6, 0.3), "coatings": (), "load": 1e-3}, "substrate.E"),
         ({"substrate": (2.1e12, 0.3)}, "substrate.E"),
         ({"load": 4e4}, "0.11 R"),
-        (
-            {"coatings": ((450e9, 0.22, 11e-3),)},
-            "0.011 m",
-        ),
+        ({"coatings": ((450e9, 0.22, 11e-3),)}, "0.011 m"),
         ({"coatings": ((450e9, 0.22, 3e-3),)}, "contact"),
         ({"coatings": ((450e9, 0.22, 1.5e-3),)}, "thickness"),
         ({"coatings": ((279e9, 0.21, 2e-7), (450e9, 0.22, 2e-6))}, "surface"),

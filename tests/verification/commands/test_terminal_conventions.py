@@ -54,10 +54,7 @@ def stored(tmp_path):
     [
         # What each shell does on Tab: the word begun, then what it may become.
         ("bash", 'COMP_WORDS=(coatcheck re) COMP_CWORD=1; _coatcheck; echo "${COMPREPLY[@]}"; complete -p'),
-        (
-            "zsh",
-            "whence -f $_comps[coatcheck] && [[ -n $_comps[coatcheck] ]] && echo default",
-        ),
+        ("zsh", "whence -f $_comps[coatcheck] && [[ -n $_comps[coatcheck] ]] && echo default"),
         ("fish", "complete -C 'coatcheck re'; echo default"),
     ],
 )

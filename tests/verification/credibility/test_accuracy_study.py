@@ -14,11 +14,7 @@ from verification.commands import run as command
 from verification.commands.common import named_files, task_progress
 from verification.credibility import accuracy_study as accuracy_study
 from verification.credibility.accuracy_study import BARE, COATED, from_json, to_json
-from verification.credibility.refinement_studies import (
-    QUANTITIES,
-    order_of,
-    refined_grid,
-)
+from verification.credibility.refinement_studies import QUANTITIES, order_of, refined_grid
 from verification.judging.outcome import Outcome
 from verification.regression.run_exit_codes import EXIT
 from verification.running.checked_files import StoreError, write_checked

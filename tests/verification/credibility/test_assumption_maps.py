@@ -33,12 +33,7 @@ def test_shipped_maps_hold_every_place(maps):
 
 @pytest.mark.parametrize(
     ("name", "index"),
-    [
-        ("sphere", 150),
-        ("goodman", 220),
-        ("bodies", 60),
-        pytest.param("strains", 20, marks=pytest.mark.slow),
-    ],
+    [("sphere", 150), ("goodman", 220), ("bodies", 60), pytest.param("strains", 20, marks=pytest.mark.slow)],
 )
 def test_shipped_entries_are_those_measured_today(maps, name, index):
     place, stored = list(MEASURED[name].places())[index], maps.of(name)

@@ -18,8 +18,7 @@ def test_the_harness_gives_the_known_answer(test):
 
 
 @pytest.mark.parametrize(
-    "name",
-    [f.name for f in FAULTS.values() if f.group == "harness" and not f.solve and f.where == "harness"],
+    "name", [f.name for f in FAULTS.values() if f.group == "harness" and not f.solve and f.where == "harness"]
 )
 def test_a_fault_of_the_harness_turns_the_answer_named_for_it(name, monkeypatch):
     fault = FAULTS[name]

@@ -78,10 +78,7 @@ def test_every_part_meets_its_limit(clean):
             ),
             "stress, inside",
         ),
-        (
-            Edit("semianalytic.nodal_convolution:samples", "/ 24", "/ 12"),
-            "stress on a plane",
-        ),
+        (Edit("semianalytic.nodal_convolution:samples", "/ 24", "/ 12"), "stress on a plane"),
         (
             Edit(
                 "semianalytic.convolution:even_convolution",

@@ -112,11 +112,7 @@ def test_of_a_coated_ball_it_belongs_to_the_ball():
     [
         (", expansion = 12e-6", "", "coatings.0"),
         ("temperature_change = -300\n", "", "coatings.0"),
-        (
-            'residual_stress = "150 MPa"',
-            'residual_stress = "150 MPa"\nexpansion = 1e-6',
-            "residual_stress",
-        ),
+        ('residual_stress = "150 MPa"', 'residual_stress = "150 MPa"\nexpansion = 1e-6', "residual_stress"),
         ('"150 MPa"', '"150 um"', "problem.coatings.1.residual_stress"),
         ("-300", '"-300 K"', "problem.temperature_change"),
         ("expansion = 2e-6", "expansion = 2.0", "problem.coatings.0.expansion"),

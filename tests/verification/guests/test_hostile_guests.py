@@ -83,7 +83,7 @@ PROGRAMS = {
     ),
 }
 SLOW = {
-    "a_gigabyte_of_output": ("while True: say('x' * 10**6 + '\\n')", NO, "more than 64 MB without an answer"),
+    "a_gigabyte_of_output": ("while True: say('x' * 10**6 + '\\n')", NO, "more than 64 MB without an answer")
 }
 
 

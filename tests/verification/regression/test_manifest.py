@@ -40,10 +40,7 @@ def recorded():
         (TENFOLD, "1.90986e+10"),
         (Edit(DECIDE, "claim.cap)", "max(claim.cap, 0.05))"), "0.05"),
         (Edit(DECIDE, ZONE, "a.position < 0"), "first"),
-        (
-            Edit(DECIDE, ZONE, "(a.position > 1.5 * edge) & (claim.line == 'axis')"),
-            "axis",
-        ),
+        (Edit(DECIDE, ZONE, "(a.position > 1.5 * edge) & (claim.line == 'axis')"), "axis"),
         (Edit(DECIDE, "claim.edge * edge", "0.12 * edge"), "points"),
         (
             Edit(

@@ -19,13 +19,7 @@ BARE = CoatedContact(10e-3, 20.0, (), (E, NU))
 PI2 = np.pi**2
 # shift and centre over beta; radius, approach, pressure on the axis over beta^2
 CLOSED = np.array(
-    [
-        -1 / np.pi,
-        -3 / (2 * np.pi),
-        1 / 18 + 1 / (6 * PI2),
-        1 / 9 - 1 / (6 * PI2),
-        -17 / 72 + 1 / (6 * PI2),
-    ]
+    [-1 / np.pi, -3 / (2 * np.pi), 1 / 18 + 1 / (6 * PI2), 1 / 9 - 1 / (6 * PI2), -17 / 72 + 1 / (6 * PI2)]
 )
 PEAK = -25 / 144 + 7 / (24 * PI2) + PI2 / 128  # over beta^2
 POWERS = np.array([1, 1, 2, 2, 2])

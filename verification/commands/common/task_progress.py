@@ -92,12 +92,7 @@ def solve(
                     console.print(escape(_sources(result)), style="dim", highlight=False)
 
         return run_tasks(
-            tasks,
-            jobs=jobs,
-            time_limit=time_limit,
-            started=started,
-            finished=finished,
-            meanwhile=meanwhile,
+            tasks, jobs=jobs, time_limit=time_limit, started=started, finished=finished, meanwhile=meanwhile
         )
 
 

@@ -21,12 +21,7 @@ from verification.commands.common.shared_options import (
     RecordsFolder,
     Resume,
 )
-from verification.commands.common.task_progress import (
-    kept_results,
-    run_info,
-    solve,
-    worker_count,
-)
+from verification.commands.common.task_progress import kept_results, run_info, solve, worker_count
 from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
 from verification.commands.common.terminal_bar import require_gmsh
 from verification.running.case_tasks import case_task

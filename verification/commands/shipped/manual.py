@@ -9,12 +9,7 @@ from verification.commands.common.terminal import print_files
 
 
 @with_exit_code
-def manual(
-    *,
-    output: Output = Path("manual"),
-    quiet: Quiet = False,
-    as_json: AsJson = False,
-) -> int:
+def manual(*, output: Output = Path("manual"), quiet: Quiet = False, as_json: AsJson = False) -> int:
     """Write the manual: theory, cases, formats, API, from the sources of this version.
 
     Requires the extra manual: pip install 'coatcheck[manual]'.

@@ -11,11 +11,7 @@ from verification.running.checked_files import write_atomically
 
 
 @with_exit_code
-def vectors(
-    *,
-    output: Output = Path("vectors"),
-    as_json: AsJson = False,
-) -> int:
+def vectors(*, output: Output = Path("vectors"), as_json: AsJson = False) -> int:
     """Write the open digits: exact values of 500 problems as JSON with a schema and as CSV, licence CC0.
 
     Args:

@@ -162,11 +162,7 @@ def section(material: Material, coverage: Table) -> Section | None:
         Part(stated("evidence")),
         Part(stated("intended"), [_range_table(contacts)], title="1. Intended use and limits"),
         Part(stated("code"), [_design_table(evidence.orders)], title="2. Code verification"),
-        Part(
-            stated("solution", found=_bracketed(contacts)),
-            [coverage],
-            title="3. Solution verification",
-        ),
+        Part(stated("solution", found=_bracketed(contacts)), [coverage], title="3. Solution verification"),
         Part(
             f"{_compared(results)} {_enclosed(evidence)}",
             [_pair_table(results)],

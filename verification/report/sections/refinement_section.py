@@ -133,8 +133,4 @@ def _refinement_table(studies: Sequence[Refinement], level_name: str) -> Table:
         orders = [one.order(q) for q in QUANTITIES]
         cells = [Cell("–" if o is None else f"{o:.1f}", -1.0 if o is None else o) for o in orders]
         rows.append(row(name, "observed order", *cells, "", css="order"))
-    return Table(
-        stated("refinement_table"),
-        ["solid and setting", level_name, *QUANTITIES, "time"],
-        rows,
-    )
+    return Table(stated("refinement_table"), ["solid and setting", level_name, *QUANTITIES, "time"], rows)

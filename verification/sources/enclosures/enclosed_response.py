@@ -158,12 +158,7 @@ def _raised(y: list[acb], x: acb, g: arb, nu: arb) -> list[acb]:
 
     def N(y: list[acb]) -> list[acb]:
         U, w, T, S = y
-        return [
-            2 * T / g - w,
-            (nu * U + (1 - 2 * nu) * S / g) / (1 - nu),
-            (g * U - nu * S) / (1 - nu),
-            T,
-        ]
+        return [2 * T / g - w, (nu * U + (1 - 2 * nu) * S / g) / (1 - nu), (g * U - nu * S) / (1 - nu), T]
 
     ch, sh = x.cosh(), x.sinh()
     first = N(y)

@@ -154,12 +154,7 @@ def _in_plane(g: float, nu: float) -> Array:
     """N of dy/dz = k N y for y = (2 G1 k U, 2 G1 k w, T, S), with g = G/G1."""
     c = 1 / (1 - nu)
     return np.array(
-        [
-            [0, -1, 2 / g, 0],
-            [nu * c, 0, 0, (1 - 2 * nu) * c / g],
-            [g * c, 0, 0, -nu * c],
-            [0, 0, 1, 0],
-        ]
+        [[0, -1, 2 / g, 0], [nu * c, 0, 0, (1 - 2 * nu) * c / g], [g * c, 0, 0, -nu * c], [0, 0, 1, 0]]
     )
 
 

@@ -86,10 +86,7 @@ def strength_of(given: float | Uniform | LogNormal, shown: Callable[[float], str
     """The strength of an entry of a file; ``shown`` writes a stress [Pa] with its unit."""
     if isinstance(given, Uniform):
         low, width = given.start, given.to - given.start
-        return Strength(
-            f"{shown(given.start)} to {shown(given.to)}",
-            lambda p: low + width * np.asarray(p),
-        )
+        return Strength(f"{shown(given.start)} to {shown(given.to)}", lambda p: low + width * np.asarray(p))
     if isinstance(given, LogNormal):
         s = sqrt(log(1 + (given.standard_deviation / given.mean) ** 2))
         median = given.mean * exp(-(s**2) / 2)
@@ -97,11 +94,7 @@ def strength_of(given: float | Uniform | LogNormal, shown: Callable[[float], str
             f"{shown(given.mean)}, standard deviation {shown(given.standard_deviation)}",
             lambda p: median * np.exp(s * ndtri(p)),
         )
-    return Strength(
-        shown(given),
-        lambda p: np.full(np.shape(p), float(given)),
-        scatters=False,
-    )
+    return Strength(shown(given), lambda p: np.full(np.shape(p), float(given)), scatters=False)
 
 
 # Failure mode of each stress.
