@@ -101,13 +101,6 @@ def ends_of(solution: Solution) -> Array:
     return np.where(begins, low, high)
 
 
-def ends_beside(position: Array, a: float) -> Array:
-    """The ends, as of ``ends_of``, beside which ``positions`` put points on ``EDGE_LINE``; all [m]."""
-    beside = a * np.concatenate([BESIDE_SHAPED, -BESIDE_SHAPED])[:, None]
-    missed = np.abs(position[:, None, None] + beside - position).min(axis=2).max(axis=1)
-    return position[missed < 1e-9 * a]
-
-
 def _clear_of_edges(solution: Solution, line: Line, at: Array, distance: float) -> Array:
     """Positions within ``distance`` of which the contact neither begins nor ends, all [m]."""
     least = 1e-6 * solution.peak_pressure
