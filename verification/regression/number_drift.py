@@ -39,6 +39,8 @@ FACTOR = 4.0
 SAME = 1.1
 # Where points moved further, over the length of the line, their values are not compared.
 SHIFT = 1e-6
+# Of the points on ``EDGE_LINE``, the ends of the contact: in the middle of the points around each.
+ENDS = slice(BESIDE_SHAPED.size - 1, None, 2 * BESIDE_SHAPED.size - 1)
 
 
 class State(StrEnum):
@@ -125,8 +127,8 @@ def drift(then: Numbers, now: Numbers, edges: Sequence[float] = ()) -> Drift:
     if then.line == "surface":
         for a in edges:
             at_edge |= np.abs(np.abs(then.position) - a) <= SHIFT * a
-    elif then.line == EDGE_LINE:  # the middle of the points around each end of the contact
-        at_edge[BESIDE_SHAPED.size - 1 :: 2 * BESIDE_SHAPED.size - 1] = True
+    elif then.line == EDGE_LINE:
+        at_edge[ENDS] = True
     moved = left | (~(change <= RELATIVE) & ~at_edge) | (not shift <= RELATIVE)
     ratio = _ratio(then, now, TOLERANCE * scale)
     other, far = (~((ratio >= 1 / factor) & (ratio <= factor)) for factor in (SAME, FACTOR))

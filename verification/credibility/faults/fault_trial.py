@@ -24,11 +24,12 @@ from verification.problem.line_profile import EDGE_LINE, Profile
 from verification.problem.quantity import DISPLACEMENTS
 from verification.regression.baseline_change import State, drift, measured
 from verification.regression.manifest import Difference, differences, manifest_message, manifest_of
+from verification.regression.number_drift import ENDS
 from verification.running import contact_run as run
 from verification.running import published_run
 from verification.running.case_result import CaseResult, SourceResult, from_json
 from verification.running.checked_files import read_checked
-from verification.sampling.line_sampling import BESIDE_SHAPED, sample, sample_contact
+from verification.sampling.line_sampling import sample, sample_contact
 from verification.sampling.stress_plane import plane_invariants, sample_plane
 from verification.sources.source_record import Solver
 from verification.sources.source_registry import CLOSED, EXACT, METHODS, PUBLISHED
@@ -253,11 +254,8 @@ def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> 
     found = list(sample_contact(solution, source, case.problem))
     radii = [p for p in clean.profiles if (p.quantity, p.line) == ("contact_radius", "contact")]
     edge: float | Array = float(radii[-1].value[0])
-    if case.problem.indenter is not None:  # the ends, around which the line beside them has its points
-        at, a = places[EDGE_LINE], max(float(one.value[0]) for one in radii)
-        beside = a * np.concatenate([BESIDE_SHAPED, -BESIDE_SHAPED])[:, None]
-        missed = np.abs(at[:, None, None] + beside - at).min(axis=2).max(axis=1)
-        edge = at[missed < 1e-9 * a]
+    if case.problem.indenter is not None:
+        edge = places[EDGE_LINE][ENDS]
     for line in case.lines:
         found += sample(solution, source, line, places[line.name], case.problem, edge)
     return found
