@@ -232,21 +232,22 @@ class Meridian:
         # virtual work R U + T V with U = S - V
         load = [radial, normal] if m == 0 else [radial, angular - radial, normal]
         at = np.concatenate([field * N + loaded for field in range(len(load))])
-        return self.factor.solve(at, np.concatenate(load), self._far(loads) if m < 2 else None)
+        far = (self._far, _resultant(m, loads)) if m < 2 else None
+        return self.factor.solve(at, np.concatenate(load), far)
 
-    def _far(self, loads: np.ndarray) -> np.ndarray:
-        """Field vectors (n, columns) due to the resultant far away, normal (m = 0) or tangential (1)."""
-        m, d = self.harmonic, self.discretisation
-        u = np.zeros((self.skeleton.matrix.shape[0], loads.shape[-1]))
-        if m < 2:
-            resultant = (loads[1] - loads[2] if m else loads[0]).sum(axis=0)
-            far = self.solid.far_fields(int(m), resultant, d.locations[:, d.outer])
-            u.reshape(len(far), d.N, -1)[:, d.outer] = far
+    @cached_property
+    def _far(self) -> np.ndarray:
+        """Field vector (n,) due to a unit resultant far away, normal (m = 0) or tangential (1)."""
+        d = self.discretisation
+        u = np.zeros(self.skeleton.matrix.shape[0])
+        far = self.solid.far_fields(int(self.harmonic), 1.0, d.locations[:, d.outer])
+        u.reshape(len(far), d.N)[:, d.outer] = far
         return u
 
     def extended(self, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
         """Field vectors (n, columns) of the free unknowns u under ``loads``."""
-        whole = self._far(loads)
+        m, n = self.harmonic, self.skeleton.matrix.shape[0]
+        whole = np.outer(self._far, _resultant(m, loads)) if m < 2 else np.zeros((n, loads.shape[-1]))
         whole[self.factor.free] = u
         return self.skeleton.extended(whole)
 
@@ -254,3 +255,8 @@ class Meridian:
         """u_z at the nodes, of which the free unknowns are u."""
         row = self.factor.rows(self.skeleton.matrix.shape[0] - self.discretisation.N + loaded)
         return np.where(row[:, None] < 0, 0.0, u[row])
+
+
+def _resultant(m: float, loads: np.ndarray) -> np.ndarray:
+    """Normal (m = 0) or tangential (1) resultant (columns,) of ``loads`` as in ``Meridian.solve``."""
+    return np.asarray((loads[1] - loads[2] if m else loads[0]).sum(axis=0))

@@ -116,19 +116,22 @@ class ConstrainedFactor:
         row[self.free] = np.arange(self.free.size)
         return np.asarray(row[at])
 
-    def solve(self, at: np.ndarray, load: np.ndarray, given: np.ndarray | None = None) -> np.ndarray:
+    def solve(
+        self, at: np.ndarray, load: np.ndarray, given: tuple[np.ndarray, np.ndarray] | None = None
+    ) -> np.ndarray:
         """u (free, columns) of K u = load with u = ``given``, or 0, at all others.
 
         at, load : the unknowns that are loaded (k,), each once, and their loads (k, columns)
-        given : (n, columns), 0 at the ``free``
+        given : (n,), 0 at the ``free``, and how many times that in each column
         To the rounding of the factor: displacements are read, not forces.
         """
         u, row = np.empty((self.free.size, load.shape[1]), order="F"), self.rows(at)
+        held, times = np.zeros((self.free.size, 1)), np.zeros(load.shape[1])
+        if given is not None:
+            held, times = (self.K @ given[0])[self.free, None], given[1]
         for begin in range(0, load.shape[1], _COLUMNS):
             some = slice(begin, begin + _COLUMNS)
-            force = np.zeros(u[:, some].shape, order="F")
-            force[row[row >= 0]] = load[row >= 0, some]
-            if given is not None:
-                force -= (self.K @ given[:, some])[self.free]
+            force = np.asfortranarray(-held * times[some])
+            force[row[row >= 0]] += load[row >= 0, some]
             u[:, some] = self.factor(force)
         return u

@@ -221,7 +221,7 @@ class OffAxisFields:
     def __call__(self, points: SolidPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Displacement (3, n) and stress (6, n), cylindrical, and what the last third of harmonics adds.
 
-        Next to one of the ``edges`` both are those of a series, and what one more power changes counts too.
+        Next to one of the ``edges`` both follow a series, and what one more power changes counts too.
         """
         at = points.located
         u, s, late_u, late_s = self._summed(points)

@@ -8,7 +8,6 @@ corrections do not reach is the other method's, and what that leaves of the gap 
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -65,6 +64,7 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
+    typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     """
 
     contact_radius: float
@@ -77,6 +77,7 @@ class ShapedContact(PressedSolid):
     uncertainty: Uncertainty | None
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
+    typical: float = 0.0
     stiffness: float | None = None
     stiffness_uncertainty: float | None = None
     relative: bool = False
@@ -96,7 +97,7 @@ class ShapedContact(PressedSolid):
         smeared = np.where(np.asarray(z) == 0, self._smeared(x, y), 0.0)
         distance = np.hypot(x, y) / (AXIS[1] * self._units.length)
         safety = SAFETY * (1 + (AXIS[0] - 1) * np.maximum(1 - distance, 0))
-        return s, np.maximum(safety * U, self._typical) + self._floor + smeared
+        return s, np.maximum(safety * U, SAFETY * self.typical) + self._floor + smeared
 
     def _smeared(self, x: Any, y: Any) -> np.ndarray:
         """What the elements may smear of the stress on the surface [Pa], where the pressure has its root.
@@ -124,19 +125,6 @@ class ShapedContact(PressedSolid):
                 )
                 missed.append(np.abs((4 * near - far) / 6 - p / 2))
         return np.where(on_series, 0.0, (1 - 2 * nu) / (1 - nu) * np.max(missed, axis=0))
-
-    @cached_property
-    def _typical(self) -> float:
-        """Change of the stress [Pa] from the companion below the contact: it is small by chance at points."""
-        radii, turns, depths = SAMPLES
-        reach = self._units.length
-        r, theta, z = np.meshgrid(
-            reach * (np.arange(radii) + 0.4) / radii,
-            np.pi * (np.arange(turns) + 0.3) / turns,
-            reach * (0.1 + np.arange(depths) / depths),
-        )
-        _, U = super().stress_with_uncertainty(r * np.cos(theta), r * np.sin(theta), z)
-        return SAFETY * float(np.percentile(U[0, 0], TYPICAL))
 
     def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
         """The second part of ``stress_with_uncertainty``."""
@@ -296,7 +284,21 @@ def solve_shape(
         uncertainty=uncertainty,
         extent_uncertainty=extents,
         height=height,
+        typical=_typical(PressedSolid(fine, coarse, unit)) if coarse else 0.0,
     )
+
+
+def _typical(solid: PressedSolid) -> float:
+    """Change of the stress [Pa] from the companion, exceeded at few points below the contact."""
+    radii, turns, depths = SAMPLES
+    reach = solid._units.length
+    r, theta, z = np.meshgrid(
+        reach * (np.arange(radii) + 0.4) / radii,
+        np.pi * (np.arange(turns) + 0.3) / turns,
+        reach * (0.1 + np.arange(depths) / depths),
+    )
+    _, U = solid.stress_with_uncertainty(r * np.cos(theta), r * np.sin(theta), z)
+    return float(np.percentile(U[0, 0], TYPICAL))
 
 
 def _numbers(found: Corrected) -> np.ndarray:

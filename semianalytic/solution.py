@@ -19,7 +19,7 @@ from semianalytic import fields
 from semianalytic.inputs import Body, check_finite
 from semianalytic.level import Level, interpolated
 from semianalytic.neighbours import Neighbours
-from semianalytic.uncertainty import SMOOTH, Uncertainty, safety, unsettled
+from semianalytic.uncertainty import AT_EDGE, SMOOTH, Uncertainty, safety, unsettled
 
 Array = NDArray[np.floating]
 
@@ -27,8 +27,8 @@ Array = NDArray[np.floating]
 EVALUATION = (5e-6, 5e-7)
 RINGS = 2e-8  # likewise on rings
 NEAR = 8.0  # patches from the edge, within which the error of its radius is felt
-# of fields under a smooth edge, inside and next to the edge: times the last change, times the change before
-INSIDE, AT_EDGE = (4.0, 0.8), (8.0, 2.0)
+# of fields under a smooth edge, inside: times the last change, times the change before
+INSIDE = (4.0, 0.8)
 # what the refinement of a smooth edge does not show: of the root mean square of the change of the pressure,
 # and of the peak pressure; felt to a depth of some patches
 FLOOR, REACH = (0.35, 6e-7), 8.0
@@ -361,7 +361,10 @@ class Solution:
         s = 1 - width * np.linspace(1.0, 0.0, 33) ** 2
         p = [one.pressure(*one.on_ray(s, np.zeros(s.size))) for one in shapes]
         changes = [float(np.abs(a - b).max()) for a, b in pairwise(p)]
-        return unsettled(*changes, self._level.ripple) if len(changes) == 2 else sum(changes)
+        if len(changes) < 2:
+            return sum(changes)
+        last, before = changes
+        return unsettled(last, before, self._level.ripple)
 
     def _misfit(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Error [Pa] by what the shape of the pressure misses inside."""

@@ -19,9 +19,9 @@ RADIUS, MOVING = 1.2, "edge on the patches"
 OUTSIDE = 3.0  # times as much where the shape is fitted near the edge alone
 SECOND = 1e-3  # of approach and peak, times (d/a)^2: what patches leave of deflection and pressure inside
 UNRESOLVED = 0.03  # patches by which the edge of a film thinner than two of them may be wrong
-# over the accuracy asked, of the change of the pressure at the same x/a; the part that is left of the change
-# before: it was seen to fall 2.4 to 10 times from one grid to the next
-PRESSURE, EARLIER = 4.0, 1 / 5
+# Of fields at a smooth edge, at the same x/a: times the last change, times the change before. Over the
+# accuracy asked, the most that this may be of the pressure.
+AT_EDGE, PRESSURE = (8.0, 2.0), 8.0
 # Patches between centre and edge, below which the uncertainty grows as the fourth power of their size: a film
 # of 0.1 a on 15 patches needed 5.4 times.
 COARSE = 24.0
@@ -131,8 +131,8 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
 def is_met(accuracy: float, estimate: Uncertainty, levels: list[Level]) -> bool:
     """Whether the scalars, and the pressure under a smooth edge, are as accurate as asked, relative."""
     last, before = (_pressure_change(levels[k], levels[k - 1]) for k in (-1, -2))
-    change = max(unsettled(last, before), EARLIER * before) / levels[-1].scalars["peak_pressure"]
-    return estimate.relative_to(levels[-1].scalars) <= accuracy and change <= PRESSURE * accuracy
+    at_edge = max(AT_EDGE[0] * last, AT_EDGE[1] * before) / levels[-1].scalars["peak_pressure"]
+    return estimate.relative_to(levels[-1].scalars) <= accuracy and at_edge <= PRESSURE * accuracy
 
 
 def is_stalled(accuracy: float, reached: Sequence[float], levels: list[Level]) -> bool:

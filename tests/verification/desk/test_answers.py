@@ -53,8 +53,8 @@ def trailing_edge(problem, nu):
 
 def test_elastic_ball_is_torn_at_its_own_trailing_edge(solved):
     flat, ball = (at(solved[ELASTIC], "sigma_xx", "surface", body) for body in ("flat", "ball"))
-    assert flat.value == pytest.approx(trailing_edge(ELASTIC, 0.3), rel=1e-6)
-    assert ball.value == pytest.approx(trailing_edge(ELASTIC, 0.27), rel=1e-6)
+    assert flat.value == pytest.approx(trailing_edge(ELASTIC, 0.3), rel=2e-6)
+    assert ball.value == pytest.approx(trailing_edge(ELASTIC, 0.27), rel=2e-6)
     assert (flat.x, ball.x) == pytest.approx((-ELASTIC.a_h, ELASTIC.a_h), rel=1e-6)
 
 
@@ -122,7 +122,7 @@ def test_largest_stresses_are_those_of_the_whole_body():
     )
     sigma = solution.stress(a * x.ravel(), a * y.ravel(), a * z.ravel())
     values = np.linalg.eigvalsh(np.moveaxis(sigma, -1, 0))
-    assert values[:, 2].max() <= at(found, "sigma_1", "substrate").value * (1 + 1e-6)
+    assert values[:, 2].max() <= at(found, "sigma_1", "substrate").value * (1 + 2e-6)
     mises = np.sqrt(((values[:, [0, 1, 2]] - values[:, [1, 2, 0]]) ** 2).sum(axis=1) / 2)
     largest = at(found, "von_mises", "substrate")
     assert 0.995 * largest.value <= mises.max() <= largest.value + largest.uncertainty
