@@ -1,5 +1,6 @@
 """Gauss points: on an interval, on the arcs of the rings around a point and over their radii."""
 
+import math
 from functools import lru_cache
 from itertools import pairwise
 
@@ -17,11 +18,10 @@ def from_gap(delta: Array, width: Array, crossing: NDArray[np.bool_], s: Array) 
     delta = np.clip(delta, 1e-12, np.where(crossing, width, 4.0))
     ratio = width / delta
     top = np.where(crossing, np.arccosh(np.maximum(ratio, 1)), np.arcsinh(ratio))[:, None]
-    mu = top * s
-    e = np.exp(mu)
-    c, h = (e + 1 / e) / 2, (e - 1 / e) / 2
-    of_gap = crossing[:, None]
-    return delta[:, None] * np.where(of_gap, c, h), delta[:, None] * top * np.where(of_gap, h, c)
+    e = np.exp(top * s)
+    other = np.where(crossing, 1.0, -1.0)[:, None] / e
+    half = delta[:, None] / 2
+    return half * (e + other), half * top * (e - other)
 
 
 def panels(
@@ -31,29 +31,29 @@ def panels(
 
     marks : radii at which rings touch the edge, ascending, and whether the point is inside.
     """
-    foot, radius, weight = [], [], []
-    for k, ((touches, inside), depth) in enumerate(zip(marks, scale, strict=True)):
-        rho, measure = _graded(touches, inside, float(depth), nodes)
-        foot.append(np.full(rho.size, k))
-        radius.append(rho)
-        weight.append(measure * rho)
-    return np.concatenate(foot), np.concatenate(radius), np.concatenate(weight)
-
-
-def _graded(touches: list[float], inside: bool, scale: float, nodes: int) -> tuple[Array, Array]:
-    """Gauss points and weights of rho up to the last touching ring, from the first or, inside, from 0."""
+    graded = [_graded(*mark, float(depth)) for mark, depth in zip(marks, scale, strict=True)]
+    foot = np.repeat(np.arange(len(graded)), [nodes * len(one) for one in graded])
+    begin, length, crowded = np.array([panel for one in graded for panel in one]).T[:, :, None]
     s, w = gauss_legendre(nodes)
-    crowded, slope = s**4, 4 * s**3 * w
-    points: list[Array] = []
-    weights: list[Array] = []
+    radius = begin + length * np.where(crowded, s**4, s)
+    weight = np.abs(length) * np.where(crowded, 4 * s**3, 1.0) * w
+    return foot, radius.ravel(), (weight * radius).ravel()
+
+
+def _graded(touches: list[float], inside: bool, scale: float) -> list[tuple[float, float, bool]]:
+    """Panels of rho up to the last touching ring, from the first or, inside, from 0.
+
+    Of each where it begins, its length, and whether its points crowd where it begins, as s^4; the length is
+    negative where that is the upper end.
+    """
+    found: list[tuple[float, float, bool]] = []
 
     def plain(a: float, b: float, share: float, pole: float, shortest: float = 0.0) -> None:
         while a < b * (1 - 1e-12):
             longest = max(share * abs(a - pole), shortest)
-            step = min(float(np.hypot(a, scale)), longest)
+            step = min(math.hypot(a, scale), longest)
             step = b - a if step > 0.7 * (b - a) else step
-            points.append(a + step * s)
-            weights.append(step * w)
+            found.append((a, step, False))
             a += step
 
     first, last = touches[0], touches[-1]
@@ -61,22 +61,19 @@ def _graded(touches: list[float], inside: bool, scale: float, nodes: int) -> tup
     if inside and first > 0:
         near = 0.75 * first
         plain(0.0, near, 0.75, first)
-        points.append(first - (first - near) * crowded[::-1])
-        weights.append((first - near) * slope[::-1])
+        found.append((first, near - first, True))
     for low, high in pairwise([first, *touches[1:-1], last]):
         if high <= low:
             continue
         # graded from the lower end, from the middle on towards the upper one
         to = (low + high) / 2
         begin = min(0.5 * least, (to - low) / 2, scale if low == 0 else np.inf)
-        points.append(low + begin * crowded)
-        weights.append(begin * slope)
+        found.append((low, begin, True))
         plain(low + begin, to, 1.5, low)
         end = (high - to) / 2 if high == last else min(0.5 * least, (high - to) / 2)
         plain(to, high - end, 0.6, high, end)
-        points.append(high - end * crowded[::-1])
-        weights.append(end * slope[::-1])
-    return np.concatenate(points), np.concatenate(weights)
+        found.append((high, -end, True))
+    return found
 
 
 @lru_cache

@@ -55,11 +55,11 @@ class Rings:
 @lru_cache(maxsize=16)
 def rings_of(shape: Shape, coarser: int = 0) -> "RingPressure":
     """The pressure of a shape, by fewer points where ``coarser``; the same object for the same one."""
-    terms = len(shape.coefficients)
+    terms = max(len(shape.coefficients), 6)
     more = 12 if shape.outside else 0
-    angular, radial = 16 + more + terms - 2 * coarser, 8 + more + terms // 4 - coarser
+    angular, radial = 12 + more + terms - 2 * coarser, 6 + more + terms // 2 - coarser
     if shape.round:
-        return Disc(shape.axes[0], shape.at_distance, angular, radial)
+        return Disc(shape.axes[0], shape.at_distance, angular - 4, radial)
     if shape.twin:
         return Twins(SmoothContour(replace(shape, twin=False), angular, radial))
     return SmoothContour(shape, angular, radial)
@@ -108,7 +108,7 @@ def _around(discs: Sequence[Disc], x: Array, y: Array, scale: Array) -> list[Rin
     first = discs[0]
     a = first.radius
     # points at the same distance from the axis, but for rounding, share their rings
-    r0, same = np.unique(np.round(np.hypot(x, y) / a, 14), return_inverse=True)
+    r0, same = np.unique(np.round(np.hypot(x, y) / a, 13), return_inverse=True)
     r0 *= a
     least = np.full(r0.size, np.inf)
     np.minimum.at(least, same, scale)
@@ -130,14 +130,15 @@ def _around(discs: Sequence[Disc], x: Array, y: Array, scale: Array) -> list[Rin
         beta, slope = from_gap(delta, np.full(rho.shape, np.pi), crossing, s)
         cosine = np.cos(beta)
         square = np.minimum((r - rho)[:, None] ** 2 + product[:, None] * (1 + cosine), a**2)
-        measure = 2 * slope * w
-        twice = 2 * cosine**2 - 1
-        waves = (None, -cosine, twice, -cosine * (2 * twice - 1))
+        powers = [2 * slope * w]
+        for _ in range(3):
+            powers.append(powers[-1] * cosine)
         for disc, held in zip(discs, harmonics, strict=True):
-            p = disc.of_square(square * (disc.radius / a) ** 2) * measure
+            p = disc.of_square(square * (disc.radius / a) ** 2)
             p[kappa >= 1] = 0
-            for m, wave in enumerate(waves):
-                held[max(2 * m - 1, 0), part] = p.sum(axis=1) if wave is None else np.vecdot(p, wave)
+            mean, m1, m2, m3 = (np.vecdot(p, one) for one in powers)  # of cos^m from the direction inwards
+            held[0, part], held[1, part] = mean, -m1
+            held[3, part], held[5, part] = 2 * m2 - mean, 3 * m1 - 4 * m3
     found = []
     for disc, held in zip(discs, harmonics, strict=True):
         k = disc.radius / a

@@ -37,9 +37,10 @@ DEFLECTED = 0.2  # of that floor over the peak pressure, that the displacement o
 # relative uncertainty of a, 5 times its error in the median, of which 0.4 was needed; in full below as many
 # patches
 DEEP = 0.5, 32.0
-# likewise near the edge, of the ripple of the patches, which the shape averages, and of the largest change
-# there; within some patches of it
-RIPPLE, WANDERING, TAPER = 0.9, 1.1, 16.0
+# likewise near the edge, of the ripple of the patches, which the shape averages, of the largest change there,
+# and of the pressure a patch inside it, of which the parts of a patch leave a little on every grid; within
+# some patches of it
+RIPPLE, WANDERING, LEFT, TAPER = 0.9, 1.1, 4e-5, 16.0
 # times the misfit of the shape inside, where that is more; falling as the square of the distance
 MISFIT = 2.0
 RESOLUTION = 1e-7  # of the pressure of patches: its response to the gap the iteration leaves
@@ -348,7 +349,16 @@ class Solution:
 
     def _near_ripple(self, x: ArrayLike, y: ArrayLike) -> Array:
         away = self._to_edge(x, y) / (TAPER * self.diagnostics.patch_size)
-        return (RIPPLE * self._level.ripple + WANDERING * self._edge_change) / (1 + away * away)
+        return self._edge_error / (1 + away * away)
+
+    @cached_property
+    def _edge_error(self) -> float:
+        """Error of a pressure with a smooth edge [Pa] next to it, at equal x/a."""
+        shape, left = self._level.shape, 0.0
+        if shape is not None:
+            inside = np.maximum(1 - self.diagnostics.patch_size / np.min(shape.axes, keepdims=True), 0.0)
+            left = LEFT * float(shape.pressure(*shape.on_ray(inside, np.zeros(1)))[0])
+        return RIPPLE * self._level.ripple + WANDERING * self._edge_change + left
 
     @cached_property
     def _edge_change(self) -> float:
