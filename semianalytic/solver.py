@@ -43,7 +43,7 @@ BESIDE = 513  # patches a side, at most, of the grid of contacts at neighbouring
 ROUGH, ROOMY = 49, 1.5
 FINER = 1.4  # patches a side of the next grid over the last
 LARGEST_GRID = 2801  # patches a side of the last for ``accuracy``,
-LARGE_GRID = 1025  # and where refining no longer lessens the uncertainty
+LARGE_GRID = 1401  # and where refining no longer lessens the uncertainty
 
 
 def solve(
@@ -77,7 +77,7 @@ def solve(
     edge_correction : for the square root of the pressure at the edge (``edge_correction``). False : constant
     patches alone, whose edge is a staircase.
     accuracy : relative uncertainty of contact radius, approach and peak pressure, for which the patches are
-    refined beyond ``patches`` to at most 2801 a side, 1025 where that stops helping, and until what is
+    refined beyond ``patches`` to at most 2801 a side, 1401 where that stops helping, and until what is
     stated of the pressure next to the edge, at the same x/a, is at most eight times as much of its peak; the
     solution states what it reached. None : no refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
