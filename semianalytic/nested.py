@@ -5,6 +5,7 @@ from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import correlate1d, minimum_filter
 
 from semianalytic import convolution, influence
 from semianalytic.edge_correction import corrected
@@ -16,6 +17,7 @@ Array = NDArray[np.floating]
 
 STRIDE = 2.8  # of grids that only give the start: iterations on the next one are about as many as by halves
 HALVINGS = 6  # of steps to the lowest point between the patches, off by 1e-4 of the height over a patch
+BESIDE = 1e-3  # of the approach, by which patches of twice the side may miss the deflection beside a contact
 # of the patches a side, over those of the grids of a refinement study; of patches alone
 REFINED, HALVED = (2.0, 1.4, 1.0), (4.0, 2.0, 1.0)
 
@@ -111,13 +113,21 @@ def _embedded(level: Level, window: Window, depth: float) -> Level:
 
 
 def is_alone(level: Level, gap: Array, window: Window, body: Body, numerics: Numerics) -> bool:
-    """Whether only the window is in contact: its rim is free, and the ``gap`` beyond it stays open."""
+    """Whether only the window is in contact: its rim is free, and the ``gap`` beyond it stays open.
+
+    By the deflection of patches of twice the side, and the lowest gap on each.
+    """
     grid, p = level.grid, level.found.pressure
     # two rings: a smooth edge lies up to a patch beyond the last loaded one
     if touches_rim(p[window.slices], grid.quarter, rings=2):
         return False
-    kernel = influence.surface_coefficients(grid.n, grid.d, body, numerics)
-    u = convolution.even_convolution(kernel, quarter=grid.quarter, threads=numerics.threads)(p)
-    g = u + gap - level.found.approach
-    g[window.slices] = np.inf
-    return bool(np.min(g) > 0)
+    gap[window.slices] = np.inf
+    # each around every other of the patches held, or of every other two where the axes are borders
+    shares, first = ((0.25, 0.5, 0.25), 0) if grid.n % 2 else ((0.5, 0.5), -1)
+    for axis in (0, 1):
+        p = correlate1d(p, shares, axis, mode="mirror" if grid.n % 2 else "reflect", origin=first)
+    gap = minimum_filter(gap, len(shares), origin=first)[::2, ::2]
+    n = 2 * len(gap) - grid.n % 2 if grid.quarter else len(gap)
+    kernel = influence.surface_coefficients(n, 2 * grid.d, body, numerics)
+    u = convolution.even_convolution(kernel, quarter=grid.quarter, threads=numerics.threads)(p[::2, ::2])
+    return bool(np.min(u + gap) > (1 + BESIDE) * level.found.approach)

@@ -67,29 +67,16 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     c = square[:, 2, 2]
     slopes = square[:, 4, 2] - square[:, 0, 2], square[:, 2, 4] - square[:, 2, 0]
     slope = np.hypot(*slopes)
-    held = p[i, j]
     at_edge = (depth[i, j] >= 1) & (depth[i, j] <= 2)
-    missed = np.abs(held**2 - c)[at_edge] / slope[at_edge].max(initial=np.finfo(float).tiny)
+    missed = np.abs(p[i, j] ** 2 - c)[at_edge] / slope[at_edge].max(initial=np.finfo(float).tiny)
     parts = np.empty((i.size, PARTS**2))
-    # the edge cuts these along x, or along y
     along_x = np.abs(slopes[0]) >= np.abs(slopes[1])
-    parts[along_x] = _all_parts(square[along_x], False)
-    parts[~along_x] = _all_parts(square[~along_x].swapaxes(1, 2), True)
+    for cut, axes in ((along_x, (0, 1, 2)), (~along_x, (0, 2, 1))):  # by the edge, along x, along y
+        k = np.flatnonzero(cut)
+        for some in (k[first : first + TOGETHER] for first in range(0, k.size, TOGETHER)):
+            parts.reshape(-1, PARTS, PARTS)[some] = _parts(square[some].transpose(axes)).transpose(axes)
     centre = np.sqrt(np.maximum(c, 0))
     return EdgePatches(i, j, centre, parts, depth[i, j] == FULL, float(missed.max(initial=0.0)))
-
-
-def _all_parts(square: Array, swap: bool) -> Array:
-    """Mean of f over PARTS x PARTS parts of every patch, (k, PARTS^2), by `_parts`.
-
-    square : as there, (k, 5, 5).  swap : its first axis is y.
-    """
-    parts = np.empty((len(square), PARTS, PARTS))
-    for first in range(0, len(square), TOGETHER):
-        some = slice(first, first + TOGETHER)
-        p = _parts(square[some])
-        parts[some] = p.swapaxes(1, 2) if swap else p
-    return parts.reshape(-1, PARTS**2)
 
 
 def _parts(square: Array) -> Array:
@@ -148,16 +135,15 @@ def beyond_centres(
     u = np.zeros((nx + 2 * NEAR, ny + 2 * NEAR))
     for (di, dj), of_parts in _stencil().items():
         moments[1 + di : 1 + di + nx, 1 + dj : 1 + dj + ny] += np.tensordot(_FIELDS @ of_parts, fields, 1)
-    for (di, dj), of_fields in zip(np.ndindex(2 * NEAR + 1, 2 * NEAR + 1), near @ _FIELDS.T, strict=True):
+    around = [*np.ndindex(2 * NEAR + 1, 2 * NEAR + 1)]
+    for (di, dj), of_fields in zip(around, near @ _FIELDS.T, strict=True):
         u[di : di + nx, dj : dj + ny] += np.tensordot(of_fields, fields, 1)
     i, j = edge.i, edge.j
     sources, share = edge.parts.T, own[i, j]
     stencil = np.array([*_stencil().values()])
     for (di, dj), at_offset in zip(_stencil(), stencil @ sources * share, strict=True):
         moments[i + 1 + di, j + 1 + dj] += at_offset
-    for (di, dj), at_offset in zip(
-        np.ndindex(2 * NEAR + 1, 2 * NEAR + 1), near @ sources * share, strict=True
-    ):
+    for (di, dj), at_offset in zip(around, near @ sources * share, strict=True):
         u[i + di, j + dj] += at_offset
     moments = _folded(moments, 1, grid)
     moments[i, j] -= edge.centre
