@@ -216,13 +216,8 @@ class Shape:
         centre = self.centre[0] + A * by.get(1, 0.0), self.centre[1] + B * by.get(-1, 0.0)
         kept = [n not in (0, 1, -1, 2) for n in self.harmonics]
         contour = self.contour + np.where(kept, x[-k:], 0.0)
-        return replace(
-            self,
-            centre=centre,
-            axes=(A, B),
-            contour=contour,
-            coefficients=self.coefficients + x[:-k].reshape(-1, k),
-        )
+        b = self.coefficients + x[:-k].reshape(-1, k)
+        return replace(self, centre=centre, axes=(A, B), contour=contour, coefficients=b)
 
     def widened(self, shift: float) -> "Shape":
         """The same with an edge ``shift`` [m] farther out."""

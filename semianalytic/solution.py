@@ -25,10 +25,11 @@ Array = NDArray[np.floating]
 
 # error of the stress below patches, over the peak pressure, against Hankel quadrature: above 4 patches, below
 EVALUATION = (5e-6, 5e-7)
-RINGS = 1e-8  # likewise on rings
+RINGS = 3e-9  # likewise on rings
 NEAR = 8.0  # patches from the edge, within which the error of its radius is felt
 # of fields under a smooth edge, inside: times the last change, times the change before
-INSIDE = (2.0, 0.3)
+INSIDE = (2.0, 0.2)
+OWN = (2.0, 0.35)  # share of a component in that: times its own change over the largest; the least
 # what the refinement of a smooth edge does not show: of the root mean square of the change of the pressure,
 # and of the peak pressure; felt to a depth of some patches
 FLOOR, REACH = (0.35, 6e-7), 8.0
@@ -212,19 +213,18 @@ class Solution:
     ) -> tuple[Array, Array]:
         """Displacement and its uncertainty [m], shape (3,) + points each.
 
-        From coarser companions, the largest of the components for each alike, with that of the approach.
+        From coarser companions, shared as that of the stress, with that of the approach.
         Raises ValueError where no uncertainty was estimated.
         """
         stated = self._stated
         u, second, third = fields.displacement(self._levels, self._body.named(body), x, y, z)
-        last, before = (np.abs(one - other).max(axis=0) for one, other in ((u, second), (second, third)))
-        if self._level.smooth() is None:
-            total = np.maximum(safety(self._refined) * last, before / 3) + stated.approach
-        else:
-            total = self._change(last, before, x, y) + RINGS * self.approach
+        own = self._change(np.abs(u - second), np.abs(second - third), x, y)
+        own[2] = total = own.max(axis=0)  # u_z moves with the approach
+        share = self._share(own, total)
+        total = total + (stated.approach if self._level.smooth() is None else RINGS * self.approach)
         if self._level.shape is not None:
             total += stated.approach + DEFLECTED * self._floor / self.peak_pressure * self.approach
-        return u, np.broadcast_to(total, u.shape).copy()
+        return u, share * total
 
     def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat") -> Array:
         """The second part of ``displacement_with_uncertainty``."""
@@ -269,9 +269,8 @@ class Solution:
         assert fine is not None
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         p, second, third = (level.pressure(*level.matching(self._level, x, y)) for level in self._levels)
-        total = self._change(np.abs(p - second), np.abs(second - third), x, y)
-        total = total + self._floor + self._near_ripple(x, y)
-        total = total + self._other_than("patch size") * self.peak_pressure
+        total = self._change(np.abs(p - second), np.abs(second - third), x, y) + self._floor
+        total = total + self._near_ripple(x, y) + self._other_than("patch size") * self.peak_pressure
         total = np.maximum(total, self._misfit(x, y, 0.0))
         if self.relative:
             return total
@@ -295,10 +294,7 @@ class Solution:
     def stress_uncertainty(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
     ) -> Array:
-        """Uncertainty of the stress [Pa], shape (3, 3) + points; see ``stress_with_uncertainty``.
-
-        Raises ValueError where no uncertainty was estimated.
-        """
+        """The second part of ``stress_with_uncertainty``."""
         return self.stress_with_uncertainty(x, y, z, layer, body)[1]
 
     def stress_with_uncertainty(
@@ -306,40 +302,49 @@ class Solution:
     ) -> tuple[Array, Array]:
         """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
 
-        The largest difference over the six components, for every component alike, of this level and the next,
-        or of the next and the one after, at the same x/a of each. Under a smooth edge times ``INSIDE`` to
-        ``AT_EDGE``, plus ``FLOOR`` of the peak; or the change by the uncertain radius, where that is larger,
-        unless the solution is ``relative_to_edge``. Of patches alone times ``safety``, or a third, plus
-        ``EVALUATION`` of the peak. Both with the changes of the peak by the other numerical parameters.
+        The largest difference over the six components of this level and the next, or of the next and the one
+        after, at the same x/a of each. Under a smooth edge times ``INSIDE`` to ``AT_EDGE``, plus ``FLOOR`` of
+        the peak; or the change by the uncertain radius, where that is larger, unless the solution is
+        ``relative_to_edge``; of that, each component has its share (``OWN``). Of patches alone times
+        ``safety``, or a third, plus ``EVALUATION``. Both with the changes by the other numerical parameters.
         Raises ValueError where no uncertainty was estimated.
         """
         stated, floor, solid = self._stated, self._other_than("patch size"), self._body.named(body)
         sigma, second, third = fields.stress(self._levels, solid, x, y, z, layer)
-        change, before = (np.abs(a - b).max(axis=(0, 1)) for a, b in ((sigma, second), (second, third)))
+        own = self._change(np.abs(sigma - second), np.abs(second - third), x, y)
+        total = own.max(axis=(0, 1))
+        own[0, 0] = own[1, 1] = np.maximum(own[0, 0], own[1, 1])
+        share = self._share(own, total)
         if self._level.smooth() is not None:
-            total = self._change(change, before, x, y)
             if self._level.shape is not None:
                 shallow = 1 / (1 + np.asarray(z) / (REACH * self.diagnostics.patch_size)) ** 2
                 least = self._floor + self._near_ripple(x, y) + floor * self.peak_pressure
                 deep = np.minimum(np.asarray(z) / (DEEP[1] * self.diagnostics.patch_size), 1.0)
                 # other coefficients change all pressures together, which is felt far below the contact too
-                share = self._other_than("patch size", "iteration")
-                scale = share + DEEP[0] * deep * stated.contact_radius / self.contact_radius
+                other = self._other_than("patch size", "iteration")
+                scale = other + DEEP[0] * deep * stated.contact_radius / self.contact_radius
                 total = total + least * shallow + np.abs(sigma).max(axis=(0, 1)) * scale
                 total = np.maximum(total, self._misfit(x, y, z))
                 if not self.relative:
                     total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer))
             total = total + RINGS * self.peak_pressure
         else:
-            change = np.maximum(safety(self._refined) * change, before / 3)
-            total = change + floor * self.peak_pressure
+            total += floor * self.peak_pressure + self._rim(x, y, z)
             deep = np.asarray(z) >= 4 * self.diagnostics.patch_size
             total += np.where(deep, *EVALUATION[::-1]) * self.peak_pressure
-            total += self._rim(x, y, z)
-        return sigma, np.broadcast_to(total, (3, 3, *change.shape)).copy()
+        return sigma, share * total
+
+    def _share(self, own: Array, largest: Array) -> Array:
+        """Share of each component in the uncertainty, by its ``own`` `_change` and the ``largest`` of all."""
+        if self._level.smooth() is None:
+            return np.ones(own.shape)
+        ratio = np.divide(own, largest, out=np.ones(own.shape), where=largest > 0)
+        return np.clip(OWN[0] * ratio, OWN[1], 1.0)
 
     def _change(self, last: Array, before: Array, x: ArrayLike, y: ArrayLike) -> Array:
         """Error by the patch size from the last change and the one before."""
+        if self._level.smooth() is None:
+            return np.maximum(safety(self._refined) * last, before / 3)
         share: Array | float = 0.0
         if self._level.shape is not None:
             near = self._to_edge(x, y) / (2 * self.diagnostics.patch_size)

@@ -218,7 +218,7 @@ def _show(guest: Guest, result: CaseResult) -> None:
         print_out(f"[bold red]no result:[/] {escape(one_line(failure))}")
     missing = Counter(v.reason for _, v in result.verdicts if v.outcome is Outcome.UNSUPPORTED)
     for reason, count in missing.items():
-        print_out(f"[dim]{count} comparisons unsupported: {escape(one_line(reason))}[/]")
+        print_out(f"[dim]{count} comparisons left out: {escape(one_line(reason))}[/]")
 
 
 def report_json(found: Examined, info: RunInfo) -> str:

@@ -90,7 +90,7 @@ ON_AXIS = 5e-3  # of a place from the axis, over a
 def summary(problem: CoatedContact, found: Answer, names: Names) -> str:
     """Where both bodies are pulled and yield the most, and the interfaces are sheared; three digits in MPa.
 
-    Where the largest tension is not that of a coating, the largest of the coatings follows; then the largest
+    The largest tension of a coating comes first, then that of all where it is elsewhere; then the largest
     sigma_xx at the base of a coating, which cracks from there too.  names : of the coatings, see ``Case``.
     """
     a, sliding = found.numbers["contact_radius"][0], problem.friction > 0
@@ -104,12 +104,13 @@ def summary(problem: CoatedContact, found: Answer, names: Names) -> str:
         coated = bool(problem.seen_from(at.body).coatings)
         return f"{where} of the {at.body}" if coated else f"the {at.body}"
 
-    parts = ["No tension"]
-    if largest.value > 0:
-        parts = [f"Largest tension {_mpa(largest)} in {name(largest)}, {_place(largest, a, sliding=sliding)}"]
-    for at in coatings[:1]:
-        if at is not largest and at.value > 0:
-            parts.append(f"of the coatings {_mpa(at)} in {name(at)}, {_place(at, a, sliding=sliding)}")
+    def said(at: Extreme) -> str:
+        return f"{_mpa(at)} in {name(at)}, {_place(at, a, sliding=sliding)}"
+
+    pulled = [at for at in (*coatings[:1], largest) if at.value > 0]
+    parts = [f"Largest tension {said(largest)}"] if pulled else ["No tension"]
+    if pulled and pulled[0] is not largest:
+        parts = [f"Largest tension of the coatings {said(pulled[0])}", f"of all {said(largest)}"]
     parts += [f"{_mpa(at)} at the {name(at)}" for at in bases[:1] if at.value > 0]
     parts += [f"{name(at)} sheared by {_mpa(at)}" for at in found.extremes if at.quantity == "|sigma_xz|"]
     parts.append(f"von Mises stress up to {_mpa(von_mises)} in {name(von_mises)}")

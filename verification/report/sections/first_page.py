@@ -7,7 +7,14 @@ from math import isfinite
 from statistics import median
 from typing import Any
 
-from verification.credibility.faults.first_notice import kinds, method_score, of_method
+from verification.credibility.faults.first_notice import (
+    COUNTED,
+    Noticed,
+    kinds,
+    method_score,
+    noticed,
+    of_method,
+)
 from verification.judging.verdict import Claim, Outcome
 from verification.page.number_text import plain, scientific
 from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of
@@ -252,9 +259,11 @@ def worth(material: Material) -> list[Worth]:
         value = f"{faults.caught} of {len(faults.tried)}"
         recorded("planted faults detected", value, "#faults", "faults", faults.started, faults.commit)
         if of_method(faults):
-            noticed, total = method_score(faults)
-            name = "of these, semi-analytical"
-            found.append(Worth(name, f"{noticed} of {total}", "#faults", None, kinds(faults)))
+            seen, total = method_score(faults)
+            apart = (*COUNTED, Noticed.EQUIVALENT, Noticed.NOT_TRIED)
+            left = ", ".join(row.name for row in of_method(faults) if noticed(row) not in apart)
+            note = "; ".join(filter(None, (kinds(faults), left and f"by none of these: {left}")))
+            found.append(Worth("of these, semi-analytical", f"{seen} of {total}", "#faults", None, note))
         if faults.alarms:
             silent = [row not in faults.alarms for row in faults.controls]
             share("negative controls left alone", silent, "#faults")
