@@ -152,6 +152,15 @@ def test_summary_names_the_layer_the_place_and_the_side_of_the_largest_tension(s
     assert "170 MPa" not in summary(BARE, squeezed, {})
 
 
+def test_summary_names_the_tension_of_a_coating_before_a_larger_one_elsewhere(solved):
+    found = solved[LAYERED]
+    below = at(found, "sigma_1", "substrate")
+    torn = replace(found, extremes=tuple(replace(e, value=1e10) if e is below else e for e in found.extremes))
+    first, second = summary(LAYERED, torn, {}).split("; ")[:2]
+    assert first.startswith("Largest tension of the coatings")
+    assert second.startswith("of all 10000 MPa in the substrate")
+
+
 def test_differences_are_by_key_with_both_uncertainties(solved):
     first = solved[SLIDING]
     assert all(d.value == 0 and d.within for d in differences(first, first))
