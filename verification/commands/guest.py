@@ -216,9 +216,10 @@ def _show(guest: Guest, result: CaseResult) -> None:
         print_out(table)
     for failure in sorted({s.failure for s in result.sources if s.failure}):
         print_out(f"[bold red]no result:[/] {escape(one_line(failure))}")
-    missing = Counter(v.reason for _, v in result.verdicts if v.outcome is Outcome.UNSUPPORTED)
-    for reason, count in missing.items():
-        print_out(f"[dim]{count} comparisons left out: {escape(one_line(reason))}[/]")
+    missing = [(v.reason, claim.quantity) for claim, v in result.verdicts if v.outcome is Outcome.UNSUPPORTED]
+    for reason, count in Counter(reason for reason, _ in missing).items():
+        quantities = ", ".join(dict.fromkeys(name for why, name in missing if why == reason))
+        print_out(f"[dim]{count} comparisons left out, of {quantities}: {escape(one_line(reason))}[/]")
 
 
 def report_json(found: Examined, info: RunInfo) -> str:
