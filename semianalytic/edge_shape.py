@@ -172,15 +172,13 @@ class Shape:
         """tau, from -1 at the edge to 1 in the centre."""
         if np.isinf(self.layer):
             return 2 * t - 1
-        tau: Array = (2 / np.arcsinh(1 / self.layer)) * np.arcsinh(t / self.layer) - 1
-        return tau
+        return np.asarray((2 / np.arcsinh(1 / self.layer)) * np.arcsinh(t / self.layer) - 1)
 
     def _argument_slope(self, t: Array) -> Array | float:
         """dtau/dt."""
         if np.isinf(self.layer):
             return 2.0
-        slope: Array = 2 / (np.hypot(t, self.layer) * np.arcsinh(1 / self.layer))
-        return slope
+        return np.asarray(2 / (np.hypot(t, self.layer) * np.arcsinh(1 / self.layer)))
 
     def _smooth(self, t: Array, H: Array) -> Array:
         """q [Pa]."""

@@ -29,19 +29,12 @@ def profile_of(indenter: Shape, radius: float) -> Callable[[Any, Any], Any]:
     if shape == "asperities" and len(numbers) == 1:
         (distance,) = numbers
         check_positive(distance=distance)
-
-        def pair(x: Any, y: Any) -> Any:
-            left, right = ((x - at) ** 2 for at in (-distance / 2, distance / 2))
-            return (np.minimum(left, right) + y**2) / (2 * radius)
-
-        return pair
+        return lambda x, y: ((np.abs(x) - distance / 2) ** 2 + y**2) / (2 * radius)
     if shape == "lobes" and len(numbers) == 3:
         count, amplitude, at = numbers
         check_positive(lobes=count, at=at)
-
-        def lobed(x: Any, y: Any) -> Any:
-            r, theta = np.hypot(x, y), np.arctan2(y, x)
-            return r**2 / (2 * radius) + amplitude * (r / at) ** count * np.cos(count * theta)
-
-        return lobed
+        return lambda x, y: (
+            np.hypot(x, y) ** 2 / (2 * radius)
+            + amplitude * (np.hypot(x, y) / at) ** count * np.cos(count * np.arctan2(y, x))
+        )
     raise ValueError(f"indenter = {indenter!r}; its shape is ellipsoid, asperities or lobes")

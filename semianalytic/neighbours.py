@@ -96,10 +96,9 @@ def hertz_radius(radius: float, load: float | None, approach: float | None, body
 def _stretched(level: Level, size: float, load: float) -> Level:
     """A level at another ``load`` [N] on patches of another ``size`` [m], to start from."""
     assert level.shape is not None
-    ratio, factor = size / level.grid.d, load / level.load
+    ratio = size / level.grid.d
+    factor = load / level.load / ratio**2
     A, B = (axis * ratio for axis in level.shape.axes)
-    shape = replace(level.shape, axes=(A, B), coefficients=level.shape.coefficients * (factor / ratio**2))
-    found = replace(
-        level.found, pressure=level.found.pressure * (factor / ratio**2), gap=level.found.gap * ratio**2
-    )
+    shape = replace(level.shape, axes=(A, B), coefficients=level.shape.coefficients * factor)
+    found = replace(level.found, pressure=level.found.pressure * factor, gap=level.found.gap * ratio**2)
     return replace(level, grid=replace(level.grid, d=size), found=found, shape=shape)

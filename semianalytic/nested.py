@@ -1,11 +1,11 @@
 """Nested iteration: contacts on ever finer grids, each started from the one before."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import correlate1d, minimum_filter
 
 from semianalytic import convolution, influence
 from semianalytic.edge_correction import corrected
@@ -121,13 +121,24 @@ def is_alone(level: Level, gap: Array, window: Window, body: Body, numerics: Num
     # two rings: a smooth edge lies up to a patch beyond the last loaded one
     if touches_rim(p[window.slices], grid.quarter, rings=2):
         return False
-    gap[window.slices] = np.inf
-    # each around every other of the patches held, or of every other two where the axes are borders
-    shares, first = ((0.25, 0.5, 0.25), 0) if grid.n % 2 else ((0.5, 0.5), -1)
-    for axis in (0, 1):
-        p = correlate1d(p, shares, axis, mode="mirror" if grid.n % 2 else "reflect", origin=first)
-    gap = minimum_filter(gap, len(shares), origin=first)[::2, ::2]
-    n = 2 * len(gap) - grid.n % 2 if grid.quarter else len(gap)
+    beyond = gap.copy()
+    beyond[window.slices] = np.inf
+    beyond = _merged(beyond, grid.n, np.minimum)
+    n = 2 * len(beyond) - grid.n % 2 if grid.quarter else len(beyond)
     kernel = influence.surface_coefficients(n, 2 * grid.d, body, numerics)
-    u = convolution.even_convolution(kernel, quarter=grid.quarter, threads=numerics.threads)(p[::2, ::2])
-    return bool(np.min(u + gap) > (1 + BESIDE) * level.found.approach)
+    p = _merged(p, grid.n, lambda one, other: (one + other) / 2)
+    u = convolution.even_convolution(kernel, quarter=grid.quarter, threads=numerics.threads)(p)
+    return bool(np.min(u + beyond) > (1 + BESIDE) * level.found.approach)
+
+
+def _merged(field: Array, n: int, joined: Callable[[Array, Array], Array]) -> Array:
+    """Field on patches of twice the side: of an even number ``n`` two joined, of an odd one every other with
+    half of both beside it; mirrored at the ends."""
+    for _ in (0, 1):
+        if n % 2:
+            field = np.pad(field, ((1, 1), (0, 0)), mode="reflect")
+            field = joined(field[:-1], field[1:])
+        elif len(field) % 2:
+            field = np.pad(field, ((0, 1), (0, 0)), mode="symmetric")
+        field = joined(field[:-1:2], field[1::2]).T
+    return field

@@ -167,10 +167,8 @@ def _folded(field: Array, width: int, grid: Grid) -> Array:
     """A field with ``width`` patches more around the window: of a quarter, its mirror images added."""
     if grid.quarter:
         for _ in range(2):
-            if grid.n % 2:
-                field[width : 2 * width + 1] += field[width::-1]
-            else:
-                field[width : 2 * width] += field[width - 1 :: -1]
+            last = width - 1 + grid.n % 2
+            field[width : width + last + 1] += field[last::-1]
             field = field.T
     return field[width:-width, width:-width]
 

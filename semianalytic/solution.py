@@ -30,6 +30,7 @@ NEAR = 8.0  # patches from the edge, within which the error of its radius is fel
 # of fields under a smooth edge, inside: times the last change, times the change before
 INSIDE = (2.0, 0.2)
 OWN = (2.0, 0.35)  # share of a component in that: times its own change over the largest; the least
+SHEAR = (1.0, 0.25)  # likewise, of a shear stress
 # what the refinement of a smooth edge does not show: of the root mean square of the change of the pressure,
 # and of the peak pressure; felt to a depth of some patches
 FLOOR, REACH = (0.35, 6e-7), 8.0
@@ -38,6 +39,7 @@ DEFLECTED = 0.2  # of that floor over the peak pressure, that the displacement o
 # relative uncertainty of a, without which an error was 0.92 of the whole in 200 random problems; in full
 # below as many patches
 DEEP = 0.03, 32.0
+MEAN = 0.2  # less as deep, where a stress is a mean over many patches
 # likewise near the edge, of the ripple of the patches, which the shape averages, of the largest change there,
 # and of the pressure a patch inside it, of which the parts of a patch leave a little on every grid; within
 # some patches of it
@@ -220,7 +222,7 @@ class Solution:
         u, second, third = fields.displacement(self._levels, self._body.named(body), x, y, z)
         own = self._change(np.abs(u - second), np.abs(second - third), x, y)
         own[2] = total = own.max(axis=0)  # u_z moves with the approach
-        share = self._share(own, total)
+        share = self._share(own, total, OWN)
         total = total + (stated.approach if self._level.smooth() is None else RINGS * self.approach)
         if self._level.shape is not None:
             total += stated.approach + DEFLECTED * self._floor / self.peak_pressure * self.approach
@@ -305,7 +307,7 @@ class Solution:
         The largest difference over the six components of this level and the next, or of the next and the one
         after, at the same x/a of each. Under a smooth edge times ``INSIDE`` to ``AT_EDGE``, plus ``FLOOR`` of
         the peak; or the change by the uncertain radius, where that is larger, unless the solution is
-        ``relative_to_edge``; of that, each component has its share (``OWN``). Of patches alone times
+        ``relative_to_edge``; of that, a component has its share (``OWN``, ``SHEAR``). Of patches alone times
         ``safety``, or a third, plus ``EVALUATION``. Both with the changes by the other numerical parameters.
         Raises ValueError where no uncertainty was estimated.
         """
@@ -314,7 +316,8 @@ class Solution:
         own = self._change(np.abs(sigma - second), np.abs(second - third), x, y)
         total = own.max(axis=(0, 1))
         own[0, 0] = own[1, 1] = np.maximum(own[0, 0], own[1, 1])
-        share = self._share(own, total)
+        shear = np.reshape(~np.eye(3, dtype=bool), (3, 3) + (1,) * total.ndim)
+        share = np.where(shear, self._share(own, total, SHEAR), self._share(own, total, OWN))
         if self._level.smooth() is not None:
             if self._level.shape is not None:
                 shallow = 1 / (1 + np.asarray(z) / (REACH * self.diagnostics.patch_size)) ** 2
@@ -327,6 +330,7 @@ class Solution:
                 total = np.maximum(total, self._misfit(x, y, z))
                 if not self.relative:
                     total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer))
+                total = total * (1 - MEAN * deep)
             total = total + RINGS * self.peak_pressure
         else:
             total += floor * self.peak_pressure + self._rim(x, y, z)
@@ -334,12 +338,12 @@ class Solution:
             total += np.where(deep, *EVALUATION[::-1]) * self.peak_pressure
         return sigma, share * total
 
-    def _share(self, own: Array, largest: Array) -> Array:
+    def _share(self, own: Array, largest: Array, of: tuple[float, float]) -> Array:
         """Share of each component in the uncertainty, by its ``own`` `_change` and the ``largest`` of all."""
         if self._level.smooth() is None:
             return np.ones(own.shape)
         ratio = np.divide(own, largest, out=np.ones(own.shape), where=largest > 0)
-        return np.clip(OWN[0] * ratio, OWN[1], 1.0)
+        return np.clip(of[0] * ratio, of[1], 1.0)
 
     def _change(self, last: Array, before: Array, x: ArrayLike, y: ArrayLike) -> Array:
         """Error by the patch size from the last change and the one before."""
@@ -350,8 +354,7 @@ class Solution:
             near = self._to_edge(x, y) / (2 * self.diagnostics.patch_size)
             share = 1 / (1 + near * near)
         of_last, of_before = (far + (at - far) * share for far, at in zip(INSIDE, AT_EDGE, strict=True))
-        change: Array = np.maximum(of_last * last, of_before * before)
-        return change
+        return np.asarray(np.maximum(of_last * last, of_before * before))
 
     def _near_ripple(self, x: ArrayLike, y: ArrayLike) -> Array:
         away = self._to_edge(x, y) / (TAPER * self.diagnostics.patch_size)
@@ -385,16 +388,14 @@ class Solution:
     def _misfit(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Error [Pa] by what the shape of the pressure misses inside."""
         distant = (np.square(x) + np.square(y) + np.square(z)) / self.contact_radius**2
-        error: Array = MISFIT * self._level.misfit / (1 + distant)
-        return error
+        return np.asarray(MISFIT * self._level.misfit / (1 + distant))
 
     def _to_edge(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Distance of points from a smooth edge [m], about."""
         shape = self._level.shape
         assert shape is not None
         t, s2, _ = shape.polynomials(x, y)
-        distance: Array = np.abs(t) / (1 + np.sqrt(s2)) * min(shape.axes)
-        return distance
+        return np.asarray(np.abs(t) / (1 + np.sqrt(s2)) * min(shape.axes))
 
     @cached_property
     def _floor(self) -> float:
