@@ -216,10 +216,13 @@ def _show(guest: Guest, result: CaseResult) -> None:
         print_out(table)
     for failure in sorted({s.failure for s in result.sources if s.failure}):
         print_out(f"[bold red]no result:[/] {escape(one_line(failure))}")
-    missing = [(v.reason, claim.quantity) for claim, v in result.verdicts if v.outcome is Outcome.UNSUPPORTED]
-    for reason, count in Counter(reason for reason, _ in missing).items():
-        quantities = ", ".join(dict.fromkeys(name for why, name in missing if why == reason))
-        print_out(f"[dim]{count} comparisons left out, of {quantities}: {escape(one_line(reason))}[/]")
+    missing: dict[str, list[str]] = {}
+    for claim, verdict in result.verdicts:
+        if verdict.outcome is Outcome.UNSUPPORTED:
+            missing.setdefault(verdict.reason, []).append(claim.quantity)
+    for reason, of in missing.items():
+        quantities = ", ".join(dict.fromkeys(of))
+        print_out(f"[dim]{len(of)} comparisons left out, of {quantities}: {escape(one_line(reason))}[/]")
 
 
 def report_json(found: Examined, info: RunInfo) -> str:
