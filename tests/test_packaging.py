@@ -29,6 +29,12 @@ def test_lock_constraints_and_uv_pin_the_same_versions():
     ]
 
 
+def test_what_is_cited_and_what_is_installed_have_one_version():
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["version"]
+    assert f"version: {version}\n" in (ROOT / "CITATION.cff").read_text()
+    assert f"## {version.split('.dev')[0]}, " in (ROOT / "CHANGELOG.md").read_text()
+
+
 def test_every_dependency_is_pinned():
     pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     asked = pyproject["dependencies"] + [
