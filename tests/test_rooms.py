@@ -32,7 +32,7 @@ FLOORS = (
     ("running",),
     ("page",),
     ("evidence",),
-    ("study", "regression", "guests"),
+    ("study", "regression", "guests", "validation"),
     ("credibility", "desk"),
     ("report",),
     ("manual",),

@@ -32,6 +32,7 @@ from verification.report.sections.case_page import contents, data
 from verification.running.case_result import SCHEMA, to_json
 from verification.running.checked_files import write_together
 from verification.running.json_records import encode
+from verification.validation import validation_page
 
 # Of more cases each page is compressed until it is opened: a report of hundreds stays small.
 MOST_UNPACKED = 60
@@ -69,6 +70,7 @@ def _sections(material: Material) -> list[tuple[str, list[Section]]]:
         detection_sections.self_tests_section(found.self_tests),
         baseline_section.section(found.baseline, anchors),
         guests_section.section(),
+        validation_page.section(measured) if (measured := validation_page.shipped()) else None,
     )
     groups = (("Results", results), ("Evidence", evidence))
     return [(group, shown) for group, pages in groups if (shown := [page for page in pages if page])]

@@ -1,0 +1,89 @@
+"""Comparison with measurements: the standard's arithmetic, limits, a page that shows what was stored."""
+
+import re
+
+import numpy as np
+import pytest
+
+import semianalytic
+from verification.sources.references.layered_half_space import contact_modulus
+from verification.validation import validation_page
+from verification.validation.measured_modulus import data_sets, described, exported, table
+from verification.validation.validation_metric import (
+    bec,
+    changed_stacks,
+    exact_modulus,
+    gao,
+    method_modulus,
+    substrate,
+)
+
+SILICA = next(one for one in data_sets() if one.name == "silica_on_silicon")
+
+
+@pytest.fixture(scope="module")
+def record():
+    found = validation_page.shipped()
+    assert found is not None
+    return found
+
+
+def test_exported_modulus_of_the_bare_wafer_is_the_stated_one():
+    """The substrate's modulus follows from the data of the bare wafer, through the same tip."""
+    area, bare = table("silica_on_silicon.csv"), table("bare_silicon.csv")
+    rows = (bare["hc"] > area["hc"][1]) & (bare["hc"] < 500e-9)
+    D = exported(bare["S"][rows], np.interp(bare["hc"][rows], area["hc"], area["a"]))
+    assert abs(D.mean() - described()["substrate"]["modulus"]) < described()["substrate"]["u"]
+
+
+def test_depth_of_contact_follows_from_the_formula_of_the_instrument():
+    rows = table("silica_on_silicon.csv")
+    expected = rows["h"] - described()["instrument"]["epsilon"] * rows["P"] / rows["S"]
+    np.testing.assert_allclose(rows["hc"], expected, rtol=1e-3)
+
+
+def test_uncertainties_add_up_as_the_standard_says_and_the_interval_is_two_of_them(record):
+    for one in record.sets:
+        rows = one.measured.admitted
+        np.testing.assert_allclose(one.E, np.array(one.S) / one.measured.D[rows] - 1)
+        squares = [np.square(change) for change in one.inputs.values()]
+        squares += [np.square(one.u_num), np.square(one.u_random), np.full(len(one.E), one.u_common**2)]
+        np.testing.assert_allclose(one.u_val**2, np.sum(squares, axis=0))
+        low, high = one.interval
+        assert high - low == pytest.approx(4 * one.u_val.mean())
+        assert (low + high) / 2 == pytest.approx(one.mean)
+
+
+def test_stored_numbers_are_those_of_the_method_and_of_the_exact_solution(record):
+    one = next(found for found in record.sets if found.name == SILICA.name)
+    a, solid = SILICA.a[SILICA.admitted], (SILICA.coatings, substrate())
+    S, U = method_modulus(a[7], solid, semianalytic.solve, patches=129)
+    assert pytest.approx(one.S[7], rel=1e-9) == S
+    assert abs(S - exact_modulus(a[7], solid)) < U
+    name = "E of SiO2"
+    up, down = changed_stacks(SILICA)[name]
+    change = (exact_modulus(a[7], up) - exact_modulus(a[7], down)) / 2 / SILICA.D[SILICA.admitted][7]
+    assert one.inputs[name][7] == pytest.approx(change)
+    # both methods give the same modulus: no difference from the data is numerical
+    assert all(abs(value / one.S[k] - 1) < 2e-5 for k, value in one.elements)
+    assert len(one.elements) == 3
+
+
+def test_formulas_for_comparison_have_both_bare_limits():
+    film, base = SILICA.coatings[0], contact_modulus((), substrate())
+    for formula in (gao, bec):
+        small, large = formula(np.array([1e-4, 1e4]) * film[2], film, base)
+        assert small == pytest.approx(film[0] / (1 - film[1] ** 2), rel=1e-3)
+        assert large == pytest.approx(base, rel=1e-3)
+
+
+def test_page_shows_the_numbers_of_the_record_and_every_reason(record):
+    text = validation_page.page(record)
+    assert text.count("<img") == sum(not one.measured.reason for one in record.sets)
+    for entry in (*described()["set"], *described()["excluded"]):
+        assert entry.get("reason", "") in text
+    one = record.sets[0]
+    rows = re.findall(r"<tr[^>]*>.*?</tr>", text, flags=re.DOTALL)
+    first = next(row for row in rows if f"{one.S[0] / 1e9:.3f}" in row)
+    assert f"{one.E[0] / one.u_val[0]:+.2f}" in first
+    assert "not judged" in text
