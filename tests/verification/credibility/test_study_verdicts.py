@@ -10,8 +10,9 @@ from synthetic_study import study
 
 from verification.credibility import accuracy_study
 from verification.credibility.exact_errors import FILMS, HERTZ, ExactError
+from verification.credibility.faults.fault_anchor import Change
 from verification.credibility.faults.fault_catalogue import FAULTS
-from verification.credibility.faults.fault_planting import Edit, planted
+from verification.credibility.faults.fault_planting import planted
 from verification.credibility.refinement_studies import Level, Refinement
 from verification.credibility.study_verdicts import STAIRCASE, verdicts
 from verification.judging.outcome import Outcome
@@ -67,19 +68,23 @@ def test_every_part_meets_its_limit(clean):
     ("edit", "part"),
     [
         (
-            Edit("semianalytic.influence:surface_coefficients", "K *= 1 / (np.pi", "K *= 1.0001 / (np.pi"),
+            Change(
+                "semianalytic:surface_coefficients",
+                "1 / (np.pi * body.contact_modulus)",
+                "1.0001 / (np.pi * body.contact_modulus)",
+            ),
             "central deflection",
         ),
+        (Change("semianalytic:panels", "weight * radius", "1.0001 * weight * radius"), "stress, inside"),
         (
-            Edit("semianalytic.ring_quadrature:panels", "(weight * radius)", "(1.0001 * weight * radius)"),
-            "stress, inside",
+            Change("semianalytic:samples", "(across - 4 * middle) / 24", "(across - 4 * middle) / 12"),
+            "stress on a plane",
         ),
-        (Edit("semianalytic.nodal_convolution:samples", "/ 24", "/ 12"), "stress on a plane"),
         (
-            Edit(
-                "semianalytic.convolution:even_convolution",
+            Change(
+                "semianalytic:even_convolution",
                 "_even_spectrum(kernel, good_size(2 * nx - 1), good_size(2 * ny - 1), threads)",
-                "_even_spectrum(kernel[: nx - 1, : ny - 1], 2 * nx - 4, 2 * ny - 4, threads)",
+                "_even_spectrum(kernel[:nx - 1, :ny - 1], 2 * nx - 4, 2 * ny - 4, threads)",
             ),
             "convolution",
         ),

@@ -5,7 +5,8 @@ from types import SimpleNamespace
 import pytest
 
 from verification.cases.case_file import read_case, shipped_cases
-from verification.credibility.faults.fault_planting import Edit, planted
+from verification.credibility.faults.fault_anchor import Change
+from verification.credibility.faults.fault_planting import planted
 from verification.judging.invariants.influence_error import conversion_errors, influence_coefficients
 from verification.judging.verdict import Outcome
 from verification.problem.coated_contact import CoatedContact
@@ -13,17 +14,23 @@ from verification.problem.coated_contact import CoatedContact
 # The grid of a solution, all that the invariant takes from it.
 GRID = SimpleNamespace(diagnostics=SimpleNamespace(patches_per_side=65, patch_size=4e-6))
 POOR = {
-    "coefficients 1 % off": Edit(
-        "semianalytic.influence:surface_coefficients", "K *= 1 / (np.pi", "K *= 1.01 / (np.pi"
+    "coefficients 1 % off": Change(
+        "semianalytic:surface_coefficients",
+        "1 / (np.pi * body.contact_modulus)",
+        "1.01 / (np.pi * body.contact_modulus)",
     ),
-    "an image twice as deep": Edit("semianalytic.influence:surface_coefficients", "d, b)", "d, 2 * b)"),
-    "a domain too small": Edit(
-        "semianalytic.response:Response._transformed",
-        "low, high = 1e-7 / max(b, self.total)",
-        "low, high = 0.05 / h",
+    "an image twice as deep": Change(
+        "semianalytic:surface_coefficients",
+        "halfspace.surface_deflection(n, d, b)",
+        "halfspace.surface_deflection(n, d, 2 * b)",
     ),
-    "a prefactor 1 % off": Edit(
-        "semianalytic.frf:_one_coating_excess", "return th * (", "return 1.01 * th * ("
+    "a domain too small": Change(
+        "semianalytic:Response._transformed", "1e-07 / max(b, self.total)", "0.05 / h"
+    ),
+    "a prefactor 1 % off": Change(
+        "semianalytic:_one_coating_excess",
+        "th * (lam * (u + Q * th) + kap * (u + L * th) + 4 * kap * x * (1 + x))",
+        "1.01 * th * (lam * (u + Q * th) + kap * (u + L * th) + 4 * kap * x * (1 + x))",
     ),
 }
 

@@ -9,7 +9,8 @@ from quick_case import QUICK, coatcheck
 
 from verification.cases.case_file import parse_case
 from verification.cases.toml_file import CaseError
-from verification.credibility.faults.fault_planting import Edit, planted
+from verification.credibility.faults.fault_anchor import Change
+from verification.credibility.faults.fault_planting import planted
 from verification.credibility.self_tests import self_tests
 from verification.credibility.self_tests.known_outputs import ELSEWHERE, HERE
 from verification.credibility.self_tests.known_runs import MATERIAL, ran
@@ -19,8 +20,15 @@ from verification.regression.baseline_file import read_baseline, write_baseline
 from verification.running.case_result import CaseResult, to_json
 from verification.running.stored_run import read_run
 
-DECIDE = "verification.running.contact_run:decide"
-TENFOLD = Edit(DECIDE, "scale = divisor(", "scale = (1 if claim.line == 'contact' else 10) * divisor(")
+DECIDE = "verification.running:decide"
+TENFOLD = Change(
+    DECIDE,
+    "compare(a, b, scale=scale, excluded=excluded)",
+    "compare(a, b, scale=(1 if claim.line == 'contact' else 10) * scale, excluded=excluded)",
+)
+DEPTHS = (
+    "bounds = np.array([0.0, *problem.interfaces, max(4 * a, *(2 * z for z in problem.interfaces), 0.0)])"
+)
 ZONE = "np.abs(np.abs(a.position) - edge) < claim.edge * edge"
 
 
@@ -38,31 +46,24 @@ def recorded():
     ("change", "message"),
     [
         (TENFOLD, "1.90986e+10"),
-        (Edit(DECIDE, "claim.cap)", "max(claim.cap, 0.05))"), "0.05"),
-        (Edit(DECIDE, ZONE, "a.position < 0"), "first"),
-        (Edit(DECIDE, ZONE, "(a.position > 1.5 * edge) & (claim.line == 'axis')"), "axis"),
-        (Edit(DECIDE, "claim.edge * edge", "0.12 * edge"), "points"),
+        (Change(DECIDE, "claim.cap", "max(claim.cap, 0.05)"), "0.05"),
+        (Change(DECIDE, ZONE, "a.position < 0"), "first"),
+        (Change(DECIDE, ZONE, "(a.position > 1.5 * edge) & (claim.line == 'axis')"), "axis"),
+        (Change(DECIDE, "claim.edge * edge", "0.12 * edge"), "points"),
+        (Change("verification.sampling:_depths", DEPTHS, f"a *= 0.4; {DEPTHS}"), "axis"),
         (
-            Edit(
-                "verification.sampling.line_sampling:_depths",
-                "bounds = np.array([0.0, *",
-                "a *= 0.4; bounds = np.array([0.0, *",
-            ),
-            "axis",
-        ),
-        (
-            Edit(
-                "verification.judging.invariants.solution_invariants:_of_body",
-                'yield "symmetry"',
-                'yield from () ; "symmetry"',
+            Change(
+                "verification.judging.invariants:_of_body",
+                'yield "symmetry", partial(mirror_symmetry.symmetry, *subject)',
+                "pass",
             ),
             "semianalytic",
         ),
         (
-            Edit(
-                "verification.running.contact_run:judge_case",
-                "held += check(solution, source, case.problem)",
-                "held += check(solution, source, case.problem) if source == 'semianalytic' else ()",
+            Change(
+                "verification.running:judge_case",
+                "check(solution, source, case.problem)",
+                "check(solution, source, case.problem) if source == 'semianalytic' else ()",
             ),
             "fem_reference",
         ),
@@ -80,13 +81,7 @@ def test_less_that_is_judged_is_a_failure_on_any_machine(recorded, change, messa
 def test_a_case_that_claims_nothing_is_refused(tmp_path):
     with (
         planted(
-            (
-                Edit(
-                    "verification.judging.standard_claims:standard_claims",
-                    "return (*claims, *_off_plane(problem, pairs))",
-                    "return ()",
-                ),
-            )
+            (Change("verification.judging:standard_claims", "(*claims, *_off_plane(problem, pairs))", "()"),)
         ),
         pytest.raises(CaseError, match="judged"),
     ):

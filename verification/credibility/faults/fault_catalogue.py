@@ -1,11 +1,9 @@
 """Every planted fault by name, read from ``lists/``, group after group, with the negative controls."""
 
-import ast
 from pathlib import Path
-from typing import Any
 
 from verification.cases.toml_file import load_toml
-from verification.credibility.faults.fault_planting import Constant, Edit, Fault
+from verification.credibility.faults.fault_planting import Fault
 from verification.evidence.fault_record import GROUPS
 from verification.running.json_records import decode
 
@@ -16,18 +14,8 @@ def _listed(group: str) -> dict[str, Fault]:
     """The faults of a group by name; each key that a fault leaves out is that of its group."""
     _, content = load_toml((LISTS / f"{group}.toml").read_bytes())
     common = {"group": group, "where": content["where"], "cases": content["cases"]}
-    faults = [_fault(common | entry) for entry in content["fault"]]
+    faults = [decode(Fault, common | entry) for entry in content["fault"]]
     return {fault.name: fault for fault in faults}
-
-
-def _fault(entry: dict[str, Any]) -> Fault:
-    changes = [
-        Constant(change["target"], ast.literal_eval(change["value"]))
-        if "value" in change
-        else decode(Edit, change)
-        for change in entry.get("changes", ())
-    ]
-    return decode(Fault, entry | {"changes": changes})
 
 
 FAULTS = {name: fault for group in GROUPS for name, fault in _listed(group).items()}

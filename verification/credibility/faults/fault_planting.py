@@ -1,14 +1,11 @@
 """Planted faults: part of a function, or a constant, replaced while a trial runs.
 
-The source on disk is never changed. The text of the function is taken from the running code, edited, compiled
-in the module of the original and put in its place wherever that was imported by name; leaving the context
-restores the originals.
+The source on disk is never changed. The syntax tree of the function is edited, compiled in the module of the
+original and put in its place wherever that was imported by name; leaving the context restores the originals.
 """
 
-import inspect
-import linecache
+import ast
 import sys
-import textwrap
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -17,33 +14,10 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
+from verification.credibility.faults.fault_anchor import Change, PlantError, definition, edited
 from verification.sources.source_registry import METHODS, SOURCES
 
 PACKAGES = (*(SOURCES[name].package for name in METHODS), "verification")
-
-
-class PlantError(Exception):
-    """A fault that no longer fits the source; the message names the function and the text."""
-
-
-@dataclass(frozen=True)
-class Edit:
-    """In the function ``target``, "module:function" or "module:Class.method", ``old`` becomes ``new``.
-
-    ``old`` must occur exactly once, so that a change of the source is noticed.
-    """
-
-    target: str
-    old: str
-    new: str
-
-
-@dataclass(frozen=True)
-class Constant:
-    """The constant ``target``, "module:NAME", becomes ``new``."""
-
-    target: str
-    new: Any
 
 
 @dataclass(frozen=True)
@@ -62,7 +36,7 @@ class Fault:
     group: str
     description: str
     where: str
-    changes: tuple[Edit | Constant, ...] = ()
+    changes: tuple[Change, ...] = ()
     predicted: tuple[str, ...] = ()
     cases: tuple[str, ...] = ()
     solve: tuple[str, ...] = ()
@@ -73,29 +47,22 @@ class Fault:
 
 
 @contextmanager
-def planted(changes: tuple[Edit | Constant, ...]) -> Iterator[None]:
+def planted(changes: tuple[Change, ...]) -> Iterator[None]:
     """Context in which the running code has ``changes``. Raises PlantError where one does not fit.
 
     Tables that functions keep are forgotten before and after: they are those of the code that filled them.
     """
     with ExitStack() as stack:
         stack.callback(_forget_tables)
-        for change in changes:
-            owner, name = owner_of(change.target)
-            if name not in vars(owner):
-                raise PlantError(
-                    f"{change.target}: there is no such function; the fault no longer fits the source"
-                )
+        for target in dict.fromkeys(change.target for change in changes):
+            owner, name = owner_of(target)
             original = vars(owner)[name]
+            changed = _changed(owner, [change for change in changes if change.target == target])
             places = [(owner, name)]
-            if isinstance(change, Constant):
-                if original == change.new:
-                    raise PlantError(f"{change.target} is {original!r} already; nothing would be planted")
-                changed = change.new
-            else:
-                changed = _changed(original, name, change)
-                if isinstance(owner, ModuleType):  # functions are imported by name
-                    places = [(module, known) for module, known, value in _held() if value is original]
+            if isinstance(owner, ModuleType):  # what a module defines is imported by name
+                alike = callable(original)  # numbers are shared between constants
+                held = [one for one in _held() if one[2] is original and (alike or one[1] == name)]
+                places = [(module, known) for module, known, _ in held]
             for place, known in places:
                 stack.callback(setattr, place, known, original)
                 setattr(place, known, changed)
@@ -117,34 +84,29 @@ def _held() -> list[tuple[Any, str, Any]]:
 
 
 def owner_of(target: str) -> tuple[Any, str]:
-    """The module or class that holds ``target``, with its name there."""
-    module, _, path = target.partition(":")
-    *parents, name = path.split(".")
+    """The module or class that defines ``target``, with its name there."""
+    module, _ = definition(target)
+    *parents, name = target.partition(":")[2].split(".")
     return reduce(getattr, parents, import_module(module)), name
 
 
-def _changed(original: Any, name: str, change: Edit) -> Any:
-    """The function, method or property with the edit, compiled in its own module."""
-    function = original
-    for attribute in ("fget", "func", "__func__"):  # of a property, a cached one, a class method
-        function = getattr(function, attribute, function)
-    function = inspect.unwrap(getattr(function, "form", function))
-    text = textwrap.dedent(inspect.getsource(function))
-    count = text.count(change.old)
-    if count != 1:
-        raise PlantError(
-            f"{change.target}: {change.old!r} occurs there {count} times, not once; "
-            "the fault no longer fits the source"
-        )
-    module = sys.modules[function.__module__]
-    # A compiled property remains one, since its decorator is part of the text.
+def _changed(owner: Any, changes: list[Change]) -> Any:
+    """The new value of a constant, or the function, method or property with all ``changes``."""
+    target = changes[0].target
+    *_, name = target.partition(":")[2].split(".")
+    module, tree = definition(target)
+    known = vars(sys.modules[module])
+    title = f"<{target}, {changes[-1].by!r} planted>"
+    if not changes[0].replace:
+        value = eval(changes[0].by, known)  # text of the catalogue
+        if value == vars(owner)[name]:
+            raise PlantError(f"{target} is {value!r} already; nothing would be planted")
+        return value
+    for change in changes:
+        tree = edited(tree, change, known)
+    # A compiled property remains one, since its decorator is part of the tree.
     made: dict[str, Any] = {}
-    # Kept where inspect looks, so that a second edit finds the text of the first.
-    name_of_file = f"<{change.target}, {change.new!r} planted>"
-    lines = text.replace(change.old, change.new).splitlines(keepends=True)
-    linecache.cache[name_of_file] = (len(text), None, lines, name_of_file)
-    code = compile("".join(lines), name_of_file, "exec")
-    exec(code, vars(module), made)  # text from this package only
+    exec(compile(ast.unparse(tree), title, "exec"), known, made)
     changed = made[name]
     if isinstance(changed, cached_property):
         changed.__set_name__(type(name, (), {}), name)
