@@ -7,6 +7,7 @@ names that unit: E = 210 is meant in GPa.
 import sys
 from collections.abc import Iterator, Mapping
 
+from verification.cases.toml_file import spoken
 from verification.cases.unit_numbers import InSI
 from verification.problem.coated_contact import BALL, CoatedContact
 
@@ -53,7 +54,9 @@ def beyond_limits(p0: float, limits: Limits) -> tuple[str, ...]:
     for key, value in limits.items():
         factor, what = (1.0, "") if key.endswith("hardness") else (YIELD, f"{YIELD:g} times ")
         if p0 > factor * value:
-            found.append(f"peak pressure {_stress(p0)} is beyond {what}{key} = {_stress(value)}: not elastic")
+            found.append(
+                f"peak pressure {_stress(p0)} is beyond {what}{spoken(key)} = {_stress(value)}: not elastic"
+            )
     return tuple(found)
 
 
@@ -63,7 +66,7 @@ def residual_warnings(residual: Mapping[str, tuple[float, ...]]) -> tuple[str, .
     for body, stresses in residual.items():
         for i, value in enumerate(stresses):
             if value and not RESIDUAL[0] <= abs(value) <= RESIDUAL[1]:
-                key = f"{_before(body)}coatings.{i}.residual_stress"
+                key = spoken(f"{before(body)}coatings.{i}.residual_stress")
                 slip = "; check its unit"
                 if not isinstance(value, InSI) and abs(value) < 1e5:
                     slip = f"; {key} = {value:g} looks like {'GPa' if abs(value) < 50 else 'MPa'}"
@@ -74,6 +77,8 @@ def residual_warnings(residual: Mapping[str, tuple[float, ...]]) -> tuple[str, .
 def likely_slips(problem: CoatedContact) -> str:
     """ "; KEY = NUMBER looks like UNIT" for what a refusal may come from; "" where nothing looks so."""
     slips = [line.split("; ")[-1] for line in (*_numbers(problem), *_thick(problem)) if LIKELY in line]
+    if isinstance(problem.load, InSI) and problem.load.unit == "MN":
+        slips.insert(0, "load in MN, meganewtons, looks like mN")
     return "".join(f"; {slip}" for slip in slips[:2])
 
 
@@ -84,15 +89,16 @@ def _numbers(problem: CoatedContact) -> Iterator[str]:
             "radius", problem.radius, _LENGTH_UNITS, (1e-5, LARGEST_RADIUS), prefer="mm"
         )
     for body in problem.bodies:
-        seen, of = problem.seen_from(body), _before(body)
+        seen, of = problem.seen_from(body), before(body)
         moduli = {f"{of}coatings.{i}.E": E for i, (E, _, _) in enumerate(seen.coatings)}
         base = f"{of}E" if body == BALL else "substrate.E"
         for key, E in {base: seen.substrate[0], **moduli}.items():
+            key = spoken(key)
             if not MODULI[0] <= E <= MODULI[1]:
                 which = "below 1 MPa" if MODULI[0] > E else "above 2 TPa"
                 yield f"{key} = {E:g} Pa is {which}" + _slip(key, E, _MODULUS_UNITS, USUAL_MODULI)
         for i, (_, _, h) in enumerate(seen.coatings):
-            key = f"{of}coatings.{i}.thickness"
+            key = spoken(f"{of}coatings.{i}.thickness")
             slip = _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
             if h > problem.radius:
                 yield f"{key} = {h:g} m is beyond the radius of the ball, {problem.radius:g} m" + slip
@@ -103,7 +109,7 @@ def _thick(problem: CoatedContact) -> Iterator[str]:
     a_h = problem.a_h or sys.float_info.min  # below which floating point has nothing
     for body in problem.bodies:
         for i, (_, _, h) in enumerate(problem.seen_from(body).coatings):
-            key = f"{_before(body)}coatings.{i}.thickness"
+            key = spoken(f"{before(body)}coatings.{i}.thickness")
             if h > problem.radius or h <= min(THICKEST * a_h, COATING):
                 continue
             reason = f"is {h / a_h:.3g} contact radii; what lies below has no part"
@@ -121,9 +127,9 @@ def _order(problem: CoatedContact) -> Iterator[str]:
         (E, _, h), (E_below, _, h_below) = coatings
         ratio = h / h_below
         if ratio < THINNER and E_below != E:
-            of = _before(body)
+            of = "ball, " if body == BALL else ""
             yield (
-                f"{of}coatings.0, at the surface, has {ratio:.2g} of the thickness of {of}coatings.1 below "
+                f"{of}coating 1, at the surface, has {ratio:.2g} of the thickness of {of}coating 2 below "
                 "it; coatings are listed from the surface down"
             )
 
@@ -157,8 +163,8 @@ def _slip(
     return "; check its unit"
 
 
-def _before(body: str) -> str:
-    """Beginning of the keys of a body."""
+def before(body: str) -> str:
+    """Beginning of the dotted keys of a body."""
     return f"{BALL}." if body == BALL else ""
 
 

@@ -18,19 +18,11 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from verification.cases.case_file import (
-    SUPPORTED,
-    BallEntry,
-    Limited,
-    Material,
-    Sized,
-    Stressed,
-    TemperatureChange,
-    refuse_unfit_scales,
-)
+from verification.cases.case_file import SUPPORTED, Sized, refuse_unfit_scales
 from verification.cases.plausibility import likely_slips, residual_warnings, warnings_of
-from verification.cases.toml_file import CaseError, Poisson, Positive, Strict, Text, read_bounded, read_toml
-from verification.cases.unit_numbers import Metres, Newtons, Pascals, Units, units_of
+from verification.cases.solid_schema import BallEntry, Coating, Material, TemperatureChange, in_metres
+from verification.cases.toml_file import CaseError, Positive, Strict, Text, read_bounded, read_toml
+from verification.cases.unit_numbers import Metres, Newtons, Units, units_of
 from verification.problem.array_types import Ball, Coatings
 from verification.problem.coated_contact import FLAT, CoatedContact
 from verification.running.json_records import plain
@@ -40,7 +32,6 @@ from verification.study.solve_cache import solve_key
 from verification.study.study_table import SOURCES
 
 STUDIES = Path(__file__).parent.parent / "cases" / "shipped" / "studies"
-LISTED = 10  # errors of a file in one message
 MOST_POINTS = 1_000_000
 
 
@@ -180,48 +171,50 @@ def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...
 Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
-class _Coating(Limited, Stressed):
-    E: Pascals | None = None
-    nu: Poisson
-
-
-class _Layer(_Coating):
-    thickness: Metres | None = None
-
-
 class _Problem(Sized):
     load: Newtons | None = None
     substrate: Material
-    coating: _Coating | None = None
-    coatings: Annotated[list[_Layer], Field(default_factory=list, max_length=10)]
+    coating: Coating | None = None
+    coatings: Annotated[list[Coating], Field(default_factory=list, max_length=10)]
     ball: BallEntry | None = None
     temperature_change: TemperatureChange | None = None
 
     @model_validator(mode="after")
     def _one_swept(self) -> "_Problem":
         if (self.coating is None) == (not self.coatings):
-            raise ValueError("needs exactly one of problem.coating or problem.coatings")
-        for i, one in enumerate(self.coatings):
-            if i != self.swept and (one.E is None or one.residual_stress or one.expansion):
-                raise ValueError(f"problem.coatings.{i} is not swept: give E, and no residual stress")
-        if sum(one.thickness is None for one in self.coatings) != bool(self.coatings):
-            raise ValueError("problem.coatings: give every thickness but that of the coating to be swept")
+            raise ValueError("needs exactly one of coating or coatings")
+        for i, one in enumerate(self.coatings, start=1):
+            if one.is_sized and (one.E is None or one.residual_stress or one.expansion):
+                raise ValueError(f"coating {i} is not swept: give E, and no residual stress")
+        if sum(not one.is_sized for one in self.coatings) != bool(self.coatings):
+            raise ValueError("coatings: give every thickness but that of the coating to be swept")
+        if self.varied.layers or self.varied.is_sized:
+            raise ValueError("coating: is swept; leave out its thickness and layers, and give one E or none")
         return self
 
     @property
     def swept(self) -> int:
         """Number of the coating that is swept."""
-        return next((i for i, one in enumerate(self.coatings) if one.thickness is None), 0)
+        return next((i for i, one in enumerate(self.coatings) if not one.is_sized), 0)
 
     @property
-    def varied(self) -> _Coating:
+    def varied(self) -> Coating:
         """The coating that is swept."""
         return self.coating or self.coatings[self.swept]
 
-    def held(self) -> tuple[Coatings, Coatings]:
-        """The coatings above and below the swept one."""
-        held = [(one.E or 0.0, one.nu, one.thickness or 0.0) for one in self.coatings]
-        return tuple(held[: self.swept]), tuple(held[self.swept + 1 :])
+    @property
+    def modulus(self) -> float | None:
+        """E of the coating that is swept; None where it is swept too."""
+        return self.varied.E if isinstance(self.varied.E, float) else None
+
+    def held(self, a_h: float, over: int = 1) -> tuple[Coatings, Coatings]:
+        """The coatings above and below the swept one; ``over`` divides the number of sub-layers."""
+        above, below = self.coatings[: self.swept], self.coatings[self.swept + 1 :]
+        return in_metres(above, a_h, over), in_metres(below, a_h, over)
+
+    def graded(self) -> bool:
+        """Whether a coating beside the swept one is graded."""
+        return any(one.layers for one in (*self.coatings, *(self.ball.coatings if self.ball else ())))
 
 
 Lengths = Annotated[list[Metres], Field(min_length=1, max_length=100_000)]
@@ -300,15 +293,13 @@ def read_study_file(path: Path) -> Study:
 
 def parse_study(raw: bytes, path: Path) -> Study:
     """Check the content of a study file; ``path`` names it in messages. Raises CaseError."""
-    text, checked = read_toml(raw, path, _StudyFile, listed=LISTED)
+    text, checked = read_toml(raw, path, _StudyFile)
     p, sweep = checked.problem, checked.sweep
     coatings = p.ball.coatings if p.ball else []
     if any(c.residual_stress or c.expansion for c in coatings):
-        raise CaseError(
-            f"{path}: problem.ball.coatings: leave residual out, for no stress of the ball is judged"
-        )
+        raise CaseError(f"{path}: ball, coatings: leave residual out, for no stress of the ball is judged")
     if (p.load is None) == (sweep.load is None):
-        raise CaseError(f"{path}: needs exactly one of problem.load or sweep.load")
+        raise CaseError(f"{path}: needs exactly one of load or sweep.load")
     if sweep.load is not None and len(p.coatings) > 1:
         raise CaseError(f"{path}: sweep.load: not with several coatings; sweep the thickness of one")
     if sweep.load is not None and coatings:
@@ -319,15 +310,15 @@ def parse_study(raw: bytes, path: Path) -> Study:
         bare = CoatedContact(p.size, load, (), substrate, ball=p.ball.bare if p.ball else None)
         ball = p.ball.coated(bare.a_h) if p.ball else None
     except ValueError as error:
-        raise CaseError(f"{path}: problem: {error}") from None
-    if (p.varied.E is None) == (sweep.modulus_ratio is None):
-        raise CaseError(f"{path}: needs exactly one of problem.coating.E or sweep.modulus_ratio, E1/E2")
-    moduli = [p.varied.E] if p.varied.E else [r * p.substrate.E for r in sweep.modulus_ratio or ()]
+        raise CaseError(f"{path}: {error}") from None
+    if (p.modulus is None) == (sweep.modulus_ratio is None):
+        raise CaseError(f"{path}: needs exactly one of the coating's E or sweep.modulus_ratio, E1/E2")
+    moduli = [p.modulus] if p.modulus else [r * p.substrate.E for r in sweep.modulus_ratio or ()]
     try:
         below = p.substrate.expansion
         residual = tuple(p.varied.residual(E, p.varied.nu, below, p.temperature_change) for E in moduli)
     except ValueError as error:
-        raise CaseError(f"{path}: problem.coating: {error}") from None
+        raise CaseError(f"{path}: coating: {error}") from None
     refuse_unfit_scales(path, replace(bare, ball=ball))
     asked: list[float] | _Range | None = sweep.thickness
     key, scale = "thickness", 1.0
@@ -339,9 +330,9 @@ def parse_study(raw: bytes, path: Path) -> Study:
 
     def slips(*given: float) -> str:
         coatings = tuple((moduli[0], p.varied.nu, h) for h in given)
-        return likely_slips(replace(bare, coatings=coatings, ball=ball)).replace("coatings.0", "coating")
+        return likely_slips(replace(bare, coatings=coatings, ball=ball)).replace("coating 1", "coating")
 
-    over, under = p.held()
+    over, under = p.held(bare.a_h)
     refuse_unfit_scales(path, replace(bare, coatings=(*over, *under), ball=ball))
     contacts = [bare, replace(bare, load=sweep.load.start)] if sweep.load else [bare]
     for a_h, (i, h) in product([one.a_h for one in contacts], enumerate(thicknesses)):
@@ -379,7 +370,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
         text=text,
         warnings=(
             *_warnings(bare, ball, thicknesses, checked),
-            *(line.replace("coatings.0", "coating") for line in residual_warnings({FLAT: residual[:1]})),
+            *(line.replace("coating 1", "coating") for line in residual_warnings({FLAT: residual[:1]})),
         ),
         units=units_of(checked),
     )
@@ -396,9 +387,9 @@ def _warnings(
     limits = p.substrate.limits("substrate") | p.varied.limits("coating")
     limits |= p.ball.all_limits() if p.ball else {}
     found = [
-        line.replace("coatings.0.", "coating.")
+        line.replace("coating 1, ", "coating, ")
         # A ratio has no unit.
-        for E in ([p.varied.E] if p.varied.E else [p.substrate.E])
+        for E in ([p.modulus] if p.modulus else [p.substrate.E])
         for h in (min(thicknesses), max(thicknesses))
         for line in warnings_of(replace(bare, coatings=((E, p.varied.nu, h),), ball=ball), limits)
     ]
