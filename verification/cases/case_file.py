@@ -6,7 +6,13 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from verification.cases.plausibility import before, likely_slips, residual_warnings, warnings_of
+from verification.cases.plausibility import (
+    before,
+    diameter_remark,
+    likely_slips,
+    residual_warnings,
+    warnings_of,
+)
 from verification.cases.solid_schema import (
     BallEntry,
     Material,
@@ -47,6 +53,8 @@ class Case:
     warnings : of implausible numbers, a line each.   limits : hardness, yield strength [Pa] by their keys.
     residual : equibiaxial stress [Pa] of each coating by body, no part of ``problem``; {} without any.
     layers : number of sub-layers of each coating by body; {} where no coating is graded.
+    courses : E of each coating by body as it was given, "" where it is not graded; likewise {}.
+    remarks : on numbers that are likely but may be meant otherwise, a line each.
     names : those of the coatings of each body, then that of the body itself; "" where none is given.
     resolve : whether it is also solved scaled, with equal moduli, thick and thin (``invariants.resolved``).
     """
@@ -64,6 +72,8 @@ class Case:
     residual: dict[str, tuple[float, ...]] = field(default_factory=dict)
     layers: dict[str, tuple[int, ...]] = field(default_factory=dict)
     names: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    courses: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -130,11 +140,10 @@ class _Problem(Sized):
     ball: BallEntry | None = None
     temperature_change: TemperatureChange | None = None
 
-    def layers(self, over: int = 1) -> dict[str, tuple[int, ...]]:
-        """Number of sub-layers of each coating by body; {} where no coating is graded."""
+    def graded(self) -> dict[str, list[WholeCoating]]:
+        """The coatings by body; {} where none of them is graded."""
         bodies = {FLAT: self.coatings} | ({BALL: self.ball.coatings} if self.ball else {})
-        found = {body: tuple(c.sublayers(over) for c in coatings) for body, coatings in bodies.items()}
-        return found if any(c.layers for coatings in bodies.values() for c in coatings) else {}
+        return bodies if any(c.layers for coatings in bodies.values() for c in coatings) else {}
 
     def residual(self, over: int = 1) -> dict[str, tuple[float, ...]]:
         """Residual stress [Pa] of each sub-layer of the coatings by body; {} where there is none.
@@ -243,7 +252,7 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
     claims = _claims(path, checked, problem)
     if not claims:
         raise CaseError(f"{path}: claim: nothing is claimed of this problem, so that nothing would be judged")
-    limits = checked.problem.limits()
+    limits, graded = checked.problem.limits(), checked.problem.graded()
     return Case(
         path.stem,
         checked.title,
@@ -253,11 +262,17 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
         numerics,
         text,
         checked.resolve,
-        (*treated, *warnings_of(problem, limits), *residual_warnings(residual)),
+        (
+            *treated,
+            *warnings_of(problem, limits),
+            *residual_warnings(residual, checked.problem.temperature_change),
+        ),
         limits,
         residual,
-        checked.problem.layers(over),
+        {body: tuple(c.sublayers(over) for c in coatings) for body, coatings in graded.items()},
         checked.problem.names(),
+        {body: tuple(c.course for c in coatings) for body, coatings in graded.items()},
+        diameter_remark(checked.problem.radius),
     )
 
 

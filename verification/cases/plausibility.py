@@ -18,6 +18,7 @@ LARGEST_RADIUS = 1.0  # m
 WIDEST = 0.1  # a_h / R
 THICKEST = 20.0  # h / a_h; beyond it the substrate has no part in the contact
 COATING = 1e-3  # m, thicker than coatings are
+BALLS = (1, 2, 3, 4, 5, 6, 6.35, 8, 9.525, 10, 12.7)  # mm, usual diameters in tribometers
 STRAIN = 0.05  # p_h / E*
 THINNER = 0.2  # of the layer below it: an interlayer, that hardly lies at the surface
 RESIDUAL = (1e6, 2e10)  # Pa, magnitude of a residual stress
@@ -60,9 +61,30 @@ def beyond_limits(p0: float, limits: Limits) -> tuple[str, ...]:
     return tuple(found)
 
 
-def residual_warnings(residual: Mapping[str, tuple[float, ...]]) -> tuple[str, ...]:
-    """A line for each residual stress [Pa] below 1 MPa or above 20 GPa in magnitude."""
+def diameter_remark(radius: float | None) -> tuple[str, ...]:
+    """A line where a ``radius`` given with a unit is a usual diameter of balls, but its double is none."""
+    usual = [any(abs(1e3 * size - one) < 1e-6 for one in BALLS) for size in (radius or 0, 2 * (radius or 0))]
+    if not isinstance(radius, InSI) or usual != [True, False]:
+        return ()
+    size = f"{1e3 * radius:g} mm"
+    return (f'{size} is a usual diameter of balls; if it is yours, give "d = {size}", in a file diameter',)
+
+
+def residual_warnings(
+    residual: Mapping[str, tuple[float, ...]], change: float | None = None
+) -> tuple[str, ...]:
+    """A line for each residual stress [Pa] below 1 MPa or above 20 GPa in magnitude, or from heating.
+
+    change : of the temperature since deposition [K].
+    """
     found = []
+    worst = max((one for stresses in residual.values() for one in stresses), key=abs, default=0.0)
+    if change is not None and change > 0 and worst:
+        state = f"{_stress(abs(worst))} of {'tension' if worst > 0 else 'compression'}"
+        found.append(
+            f"temperature_change = {change:g} K, a heating since deposition, gives the coating {state}; "
+            f"cooling from deposition is negative, {-change:g}"
+        )
     for body, stresses in residual.items():
         for i, value in enumerate(stresses):
             if value and not RESIDUAL[0] <= abs(value) <= RESIDUAL[1]:

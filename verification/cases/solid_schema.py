@@ -76,6 +76,7 @@ class Coating(Limited, Stressed):
     def _not_swapped(cls, given: Any) -> Any:
         E, h = (given.get(key) for key in ("E", "thickness")) if isinstance(given, dict) else (None, None)
         if is_of("m", E) and is_of("Pa", h):
+            h, E = (one if isinstance(one, str) else f"{one:g}" for one in (h, E))
             raise ValueError(f"has thickness = {h} and E = {E}; exchange them")
         return given
 
@@ -102,6 +103,11 @@ class Coating(Limited, Stressed):
         n = self.sublayers(over)
         # One layer keeps the number as it was given, which knows whether it had a unit.
         return tuple((E, self.nu, thickness / n if n > 1 else thickness) for E in self.moduli(over))
+
+    @property
+    def course(self) -> str:
+        """E of a graded coating as it was given; "" of any other."""
+        return self.E.words if isinstance(self.E, Course | Table) else ""
 
     def moduli(self, over: int = 1) -> tuple[float, ...]:
         """The modulus [Pa] of each of its sub-layers, whose number is divided by ``over``."""

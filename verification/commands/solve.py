@@ -33,6 +33,7 @@ from verification.desk.contact_answer import (
     differences,
     summary,
     usual_seconds,
+    with_slicing,
 )
 from verification.desk.stack_text import body_label, conditions, described, outside_verified, stack
 from verification.judging.outcome import Outcome
@@ -41,6 +42,7 @@ from verification.problem.quantity import QUANTITIES
 from verification.regression.run_exit_codes import EXIT
 from verification.running.case_result import describe, message_of
 from verification.running.json_records import encode
+from verification.running.slicing_remark import SLICING
 from verification.sources.source_registry import METHODS
 
 METHOD, SECOND = METHODS
@@ -102,6 +104,7 @@ def solve(
         first = _answer(case, METHOD)
         bar.update(task, advance=1, description="half of the sub-layers")
         halved = _halved(case, first)
+        stated = with_slicing(first, halved)
         bar.update(task, advance=bool(case.layers))
     second = None
     if check:
@@ -116,7 +119,7 @@ def solve(
     print_warnings(late, case.name, strict=strict, silent=as_json)
     apart = differences(first, second) if second is not None else ()
     if not (as_json or strict):
-        _print(case, first, apart, halved)
+        _print(case, stated, apart, halved)
     with bars() as bar:
         task = bar.add_task("error of the model", total=1)
         beyond = model_error(case.problem)
@@ -128,7 +131,7 @@ def solve(
         from verification.desk.section_field import section
 
         title = f"{stack(case)}\n{conditions(case.problem)}"
-        write(first, title, plot, section(case.problem, case.residual), case.names)
+        write(stated, title, plot, section(case.problem, case.residual), case.names)
     if as_json:
         content = {  # in SI; NaN of a place that does not exist as text
             "title": case.title,
@@ -137,8 +140,9 @@ def solve(
             "residual_stress": case.residual,
             "case_file": case.text,
             "warnings": [*case.warnings, *late, *costs],
+            "remarks": case.remarks,
             "model_error": {"message": beyond.message(), **encode(beyond)},
-            "answer": encode(first),
+            "answer": encode(stated),
             "check": second and encode(second),
             "differences": [encode(one) for one in apart],
             "half_of_the_sublayers": [encode(one) for one in halved],
@@ -146,7 +150,7 @@ def solve(
         print_json(content)
     else:
         if strict:
-            _print(case, first, apart, halved)
+            _print(case, stated, apart, halved)
         _print_model(case, beyond, checked=second is not None)
         elements = f", finite elements {second.seconds:.1f} s" if second else ""
         total = time.perf_counter() - begin
@@ -189,7 +193,7 @@ def _answer(case: Case, source: str) -> Answer:
 
 
 def _halved(case: Case, first: Answer) -> tuple[Difference, ...]:
-    """Differences by half of the sub-layers of graded coatings, which shows their error; () without."""
+    """Differences by half of the sub-layers of graded coatings; () without any."""
     if not case.layers:
         return ()
     half = parse_case(case.text.encode(), Path(case.name), over=2)
@@ -242,6 +246,10 @@ def _print(case: Case, first: Answer, apart: Sequence[Difference], halved: Seque
         "",
         "tension positive, in the plane y = 0, x along sliding, z into each body",
     )
+    if halved:
+        print_out(
+            f"± contains the slicing of graded coatings, {SLICING:g} times the change by half the sub-layers"
+        )
 
 
 def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:

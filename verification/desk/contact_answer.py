@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from verification.desk.answer_stresses import Course, Extreme, stresses
 from verification.problem.coated_contact import FLAT, CoatedContact
 from verification.problem.quantity import QUANTITIES, SCALARS
+from verification.running.slicing_remark import SLICING
 from verification.sources.source_registry import solvers
 
 # Measured on one core of 2.5 GHz, an elastic ball with two thin films within 5 %.
@@ -76,6 +77,23 @@ def differences(first: Answer, second: Answer) -> tuple[Difference, ...]:
     return tuple(
         Difference(key, b - a, abs(b - a) <= U_a + U_b) for key, ((a, U_a), (b, U_b)) in pairs.items()
     )
+
+
+def with_slicing(found: Answer, halved: tuple[Difference, ...]) -> Answer:
+    """An answer for graded coatings with the uncertainty of their slicing added to those of the numbers.
+
+    halved : differences by half of the sub-layers; ``SLICING`` times each is the uncertainty.
+    """
+    by = {one.key: SLICING * abs(one.value) for one in halved}
+    numbers = {
+        name: (value, None if stated is None else stated + by.get((name,), 0.0))
+        for name, (value, stated) in found.numbers.items()
+    }
+    extremes = tuple(
+        replace(at, uncertainty=at.uncertainty + by.get((at.body, at.quantity, at.where), 0.0))
+        for at in found.extremes
+    )
+    return replace(found, numbers=numbers, extremes=extremes)
 
 
 def usual_seconds(problem: CoatedContact) -> float:

@@ -36,6 +36,7 @@ class CaseResult:
     verdicts : one (Claim, Verdict) per claim of the case, in its order.
     published : of a published case its citation and the tables as printed; empty for any other.
     invariants : of each solution by itself.   warnings : of implausible input, a line each.
+    remarks : on the input and on what its uncertainties leave out, likewise.
     """
 
     name: str
@@ -50,6 +51,7 @@ class CaseResult:
     published: dict[str, Any] = field(default_factory=dict)
     invariants: tuple[Invariant, ...] = ()
     warnings: tuple[str, ...] = ()
+    remarks: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, case: Any, **parts: Any) -> "CaseResult":

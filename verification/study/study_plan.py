@@ -66,7 +66,8 @@ class Study:
     """A sphere on coatings of every modulus [Pa] and thickness [m], at every friction; SI.
 
     loads : smallest and largest [N], number for each thickness; None for ``load`` alone.
-    above, below : fixed coatings over and under the swept one.
+    above, below : fixed coatings over and under the swept one.   halved : those and the ball with half of the
+    sub-layers of graded coatings, whose change is part of every uncertainty; {} where none is graded.
     residual : stress [Pa] of the coating of each modulus, () for none.
     cross_check : every point whose number is a multiple is also solved by the other sources; 0 none.
     ball : None is rigid, or as of CoatedContact.
@@ -88,6 +89,7 @@ class Study:
     ball: Ball | None = None
     above: Coatings = ()
     below: Coatings = ()
+    halved: dict[str, Any] = field(default_factory=dict)
     cross_check: int = 10
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
     criteria: Criteria = field(default_factory=Criteria)
@@ -154,6 +156,7 @@ class Study:
                     "substrate": list(self.substrate),
                     "ball": plain(self.ball),
                     "frictions": list(self.frictions),
+                    **({"halved": self.halved} if self.halved else {}),
                 }
                 yield Solve(first, request, places)
             first += step
@@ -360,6 +363,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
         ball=ball,
         above=over,
         below=under,
+        halved=_halved(p, bare.a_h) if p.graded() else {},
         cross_check=sweep.cross_check,
         numerics={
             source: getattr(checked, source).model_dump(exclude_none=True)
@@ -370,13 +374,23 @@ def parse_study(raw: bytes, path: Path) -> Study:
         text=text,
         warnings=(
             *_warnings(bare, ball, thicknesses, checked),
-            *(line.replace("coating 1", "coating") for line in residual_warnings({FLAT: residual[:1]})),
+            *(
+                line.replace("coating 1", "coating")
+                for line in residual_warnings({FLAT: residual[:1]}, p.temperature_change)
+            ),
         ),
         units=units_of(checked),
     )
     if study.points > MOST_POINTS:
         raise CaseError(f"{path}: sweep: {study.points} points; a study has at most {MOST_POINTS}")
     return study
+
+
+def _halved(p: _Problem, a_h: float) -> dict[str, Any]:
+    """The fixed coatings and the ball of a request with half of their sub-layers."""
+    above, below = p.held(a_h, over=2)
+    ball = p.ball.coated(a_h, over=2) if p.ball else None
+    return {"above": plain(above), "below": plain(below), "ball": plain(ball)}
 
 
 def _warnings(
