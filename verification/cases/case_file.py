@@ -294,7 +294,7 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
         raise CaseError(f"{path}: {reason}{slips}")
     if not 1e-12 < a_h < 1e3:
         reason = f"contact radius a_h = {a_h:.3g} m; check units of radius, load, E{slips}"
-        raise CaseError(f"{path}: {reason}")
+        raise CaseError(f"{path}: problem: {reason}")
     for body in problem.bodies:
         seen = problem.seen_from(body)
         for i, (_, _, h) in enumerate(seen.coatings):
@@ -313,7 +313,7 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
                 f"moduli differ {contrast:.3g} times; at most {CONTRAST:g} is supported, which is as good as "
                 "rigid; lower the largest or raise the smallest"
             )
-            raise CaseError(f"{path}: {'ball: ' if body == BALL else ''}{reason}{slips}")
+            raise CaseError(f"{path}: {'ball' if body == BALL else 'problem'}: {reason}{slips}")
 
 
 def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Claim, ...]:

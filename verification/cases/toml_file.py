@@ -16,7 +16,7 @@ MAX_BYTES = 250_000
 # 200 kB, exhaust 20 GB. A line of a case file has a few dots.
 MAX_DOTS = 250
 MAX_NAME = 100
-LISTED = 10  # errors of a file in one message
+LISTED = 6  # errors of a file in one message
 # What people write for a key; as ``meant`` of an option in commands.toml.
 _SYNONYMS = {
     "young": "E",
@@ -120,7 +120,7 @@ def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checke
 
 
 def listed_errors(error: ValidationError, model: type[BaseModel]) -> str:
-    """All errors of a file in one line, ten at most, each with place and value; what a key was meant for."""
+    """All errors of a file in one line, six at most, each with place and value; what a key was meant for."""
     told: list[str] = []
     explained: set[str] = set()
     found = error.errors(include_url=False)

@@ -20,7 +20,7 @@ from verification.running.contact_run import judge_case, solve_case
 from verification.running.json_records import plain
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import fingerprint
-from verification.running.slicing_remark import slicing_remarks
+from verification.running.slicing import slicing_remarks
 from verification.running.stored_fields import (
     confirm_fields,
     plane_path,

@@ -188,11 +188,11 @@ class _Problem(Sized):
             raise ValueError("needs exactly one of coating or coatings")
         for i, one in enumerate(self.coatings, start=1):
             if one.is_sized and (one.E is None or one.residual_stress or one.expansion):
-                raise ValueError(f"coating {i} is not swept: give E, and no residual stress")
+                raise ValueError(f"has coating {i}, which is not swept: give its E, and no residual stress")
         if sum(not one.is_sized for one in self.coatings) != bool(self.coatings):
-            raise ValueError("coatings: give every thickness but that of the coating to be swept")
+            raise ValueError("needs every thickness of its coatings but that of the one to be swept")
         if self.varied.layers or self.varied.is_sized:
-            raise ValueError("coating: is swept; leave out its thickness and layers, and give one E or none")
+            raise ValueError("has a swept coating: leave out its thickness and layers, give one E or none")
         return self
 
     @property

@@ -17,7 +17,7 @@ from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import message_of
 from verification.running.provenance import versions
-from verification.running.slicing_remark import SLICING
+from verification.running.slicing import sliced
 from verification.sources.source_registry import solvers
 from verification.study.largest_stresses import QUANTITIES as STRESSES
 from verification.study.largest_stresses import quantities
@@ -55,7 +55,7 @@ def halved_request(request: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _sliced(rows: list[dict[str, Any]], halved: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """``rows`` with the uncertainty of the slicing, ``SLICING`` times the change by half of the sub-layers.
+    """``rows`` with the uncertainty of the slicing, see ``sliced``; the swept coating is not graded.
 
     Raises ValueError with the message of a solve that failed.
     """
@@ -63,9 +63,7 @@ def _sliced(rows: list[dict[str, Any]], halved: list[dict[str, Any]]) -> list[di
     for row, other in zip(rows, halved, strict=True):
         if other["failure"] is not None:
             raise ValueError(f"with half of the sub-layers: {other['failure']}")
-        ends = {
-            f"{name}_uncertainty": SLICING * abs(row[name] - other[name]) for name in SCALES if name in row
-        }
+        ends = {f"{name}_uncertainty": sliced(row[name] - other[name]) for name in SCALES if name in row}
         found.append(row | {end: row[end] + more for end, more in ends.items() if row.get(end) is not None})
     return found
 

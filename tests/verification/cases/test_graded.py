@@ -58,11 +58,12 @@ def test_a_graded_coating_is_its_sub_layers_of_one_thickness():
         ("layers = 30\n", "", "course"),
         ('E = "279 GPa"', 'E = "279 GPa"\nlayers = 5', "course"),
         ("layers = 30", "layers = 50", "coatings"),
-        ("layers = 30", "layers = 1", "coatings.0.layers"),
-        ('course = "exponential"', 'course = "cubic"', "coatings.0.E.course"),
+        ("layers = 30", "layers = 1", "coating 1, layers"),
+        ('course = "exponential"', 'course = "cubic"', "coating 1, E, course"),
         ('top = "400 GPa"', 'top = "400 Gpa"', "GPa"),
         ('top = "400 GPa", ', "", "missing"),
-        ('course = "exponential", top = "400 GPa", base = "210 GPa"', "depth = [0, 1], E = [4e11]", "0.E"),
+        ('course = "exponential", top = "400 GPa", base = "210 GPa"', "depth = [0, 1], E = [4e11]",
+         "coating 1, E"),
         ('course = "exponential", top = "400 GPa", base = "210 GPa"', "depth = [0, 0.5], E = [4e11, 2e11]",
          "0 to 1"),
         ('course = "exponential", top = "400 GPa", base = "210 GPa"', "depth = [0, 1, 1], E = [4e11, 2e11]",
@@ -72,6 +73,6 @@ def test_a_graded_coating_is_its_sub_layers_of_one_thickness():
 def test_bad_graded_coating_is_one_message_with_its_key(old, new, message):
     with pytest.raises(CaseError) as error:
         parse(TEXT.replace(old, new, 1))
-    assert "problem" in str(error.value)
+    assert "coating" in str(error.value)
     assert "\n" not in str(error.value)
     assert message in str(error.value)

@@ -1,4 +1,9 @@
-"""What the slicing of graded coatings changes in a case, as a remark of its result."""
+"""Uncertainty of slicing a graded coating, from half of its sub-layers; for a case in a remark of its result.
+
+U = FACTOR |change| / (2^order - 1), or with the change between half and a quarter of them over 2^order if that
+is larger, since one may be small by chance. Contact and tractions converge with the square of the thickness of
+the sub-layers, stresses in the plane of a graded coating, which jump with its modulus, with that thickness.
+"""
 
 from collections.abc import Iterator, Mapping
 from itertools import accumulate, pairwise
@@ -15,10 +20,19 @@ from verification.sources.source_record import Solver
 from verification.sources.source_registry import METHODS
 
 METHOD = METHODS[0]
-# Uncertainty over the change by half of the sub-layers: in-plane stresses jump with the modulus, so that they
-# are of first order; with the factor of safety of Roache.
-SLICING = 1.25
+FACTOR = 3.0  # of safety of a study of two grids. P. J. Roache, Annu. Rev. Fluid Mech. 29 (1997) 123-160
 REACH, POINTS = 2.0, 201  # of the samples along x, over a
+
+
+def sliced(change: float, before: float = 0.0, key: tuple[str, ...] = ()) -> float:
+    """Uncertainty of the slicing of a number by its ``change`` with half of the sub-layers.
+
+    before : the change from that to a quarter of them.
+    key : of a number by its name, or (body, quantity, where) of a largest stress.
+    """
+    in_plane = key[1:2] in (("sigma_xx",), ("sigma_1",), ("von_mises",)) and "substrate" not in key[2]
+    ratio = 2 if in_plane else 4
+    return FACTOR * max(abs(change), abs(before) / ratio) / (ratio - 1)
 
 
 def slicing_remarks(
