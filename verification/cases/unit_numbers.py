@@ -198,7 +198,7 @@ def of_file(value: float, unit: float) -> float:
 def _registry() -> "UnitRegistry[Decimal]":
     from pint import UnitRegistry
 
-    registry = UnitRegistry(non_int_type=Decimal)
+    registry: UnitRegistry[Decimal] = UnitRegistry(non_int_type=Decimal)
     registry.define("Msi = 1e6 * psi")
     return registry
 

@@ -1,8 +1,8 @@
 """Uncertainty of slicing a graded coating, from half of its sub-layers; for a case in a remark of its result.
 
-U = FACTOR |change| / (2^order - 1), or with the change between half and a quarter of them over 2^order if that
-is larger, since one may be small by chance. Contact and tractions converge with the square of the thickness of
-the sub-layers, stresses in the plane of a graded coating, which jump with its modulus, with that thickness.
+U = FACTOR |change| / (2^order - 1), or with the change between half and a quarter of them over 2^order if
+that is larger, since one may be small by chance. Contact and tractions converge with the square of the
+thickness of the sub-layers, stresses in the plane of a graded coating with that thickness, since they jump.
 """
 
 from collections.abc import Iterator, Mapping
