@@ -63,7 +63,7 @@ def write_baseline(folder: Path, baseline: Baseline) -> Path:
         name: _Case(
             baseline.digests[name],
             baseline.manifests[name],
-            _lines(name, found),
+            points_by_line(name, found),
             tuple(_stored(n) for n in found),
         )
         for name, found in baseline.cases.items()
@@ -90,7 +90,7 @@ def read_baseline(folder: Path) -> Baseline | None:
     return Baseline(numbers, digests, file.history, manifests, file.self_tests)
 
 
-def _lines(case: str, found: tuple[Numbers, ...]) -> dict[str, Array]:
+def points_by_line(case: str, found: tuple[Numbers, ...]) -> dict[str, Array]:
     """The points of each line of a case."""
     lines: dict[str, Array] = {}
     for n in found:
