@@ -12,7 +12,6 @@ from .levels import NotConverged
 from .off_axis import PressedSolid, check_pressure
 from .shaped_contact import ShapedContact, solve_shape
 from .solved_contact import Solution
-from .vtu import plane_mesh, write_vtu
 
 __all__ = [
     "NotConverged",
@@ -20,9 +19,7 @@ __all__ = [
     "ShapedContact",
     "Solution",
     "check_pressure",
-    "plane_mesh",
     "solve",
     "solve_prescribed",
     "solve_shape",
-    "write_vtu",
 ]

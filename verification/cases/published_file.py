@@ -5,6 +5,7 @@ digitisation uncertainty of the source, which are compared like those of any oth
 """
 
 from dataclasses import dataclass, replace
+from itertools import chain, count
 from pathlib import Path
 from typing import Any
 
@@ -76,6 +77,7 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
             notes.append(content.notes)
             texts.append(f"# {table.file}\n{content.raw}")
             columns += columns_of(table, content, units, problem, f"table.{i}")
+        columns = _told_apart(columns)
         problem = _with_points(problem, columns)
     except CaseError:  # of a table, which names its own file
         raise
@@ -105,6 +107,25 @@ def parse_published(raw: bytes, path: Path) -> PublishedCase:
         # The tables belong to the input as much as the file that names them.
         text="\n".join(dict.fromkeys(texts)),
     )
+
+
+def _told_apart(columns: list[PublishedColumn]) -> list[PublishedColumn]:
+    """The columns on lines so named that a name has one set of points and each quantity once.
+
+    A column that is read twice, at other points or from other rows, has its quantity behind the name of its
+    line the second time, then a number.
+    """
+    points: dict[str, bytes] = {}
+    taken: set[tuple[str, str]] = set()
+    found = []
+    for item in columns:
+        quantity, line, here = item.profile.quantity, item.profile.line, item.profile.position.tobytes()
+        names = chain((line, f"{line} as {quantity}"), (f"{line} as {quantity}, {n}" for n in count(2)))
+        name = next(n for n in names if points.get(n, here) == here and (quantity, n) not in taken)
+        points[name] = here
+        taken.add((quantity, name))
+        found.append(replace(item, profile=replace(item.profile, line=name)))
+    return found
 
 
 def _with_points(problem: Problem, columns: list[PublishedColumn]) -> Problem:

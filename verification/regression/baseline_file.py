@@ -54,13 +54,16 @@ def path_in(folder: Path) -> Path:
 
 
 def write_baseline(folder: Path, baseline: Baseline) -> Path:
-    """Store the baseline in ``folder``, whole or not at all. Raises StoreError."""
+    """Store the baseline in ``folder``, whole or not at all. Raises StoreError.
+
+    Raises ValueError where two profiles have one key, or a line has two sets of points.
+    """
     path = path_in(folder)
     cases = {
         name: _Case(
             baseline.digests[name],
             baseline.manifests[name],
-            {n.line: _digits(n.position, 12) for n in found},
+            points_by_line(name, found),
             tuple(_stored(n) for n in found),
         )
         for name, found in baseline.cases.items()
@@ -85,6 +88,18 @@ def read_baseline(folder: Path) -> Baseline | None:
     digests = {name: case.digest for name, case in file.cases.items()}
     manifests = {name: case.manifest for name, case in file.cases.items()}
     return Baseline(numbers, digests, file.history, manifests, file.self_tests)
+
+
+def points_by_line(case: str, found: tuple[Numbers, ...]) -> dict[str, Array]:
+    """The points of each line of a case."""
+    lines: dict[str, Array] = {}
+    for n in found:
+        there = lines.setdefault(n.line, _digits(n.position, 12))
+        if there.shape != n.position.shape or not np.allclose(there, n.position, rtol=1e-11, atol=0):
+            raise ValueError(f"{case}: line {n.line!r} has other points for {n.quantity}; name it otherwise")
+    if len({n.key for n in found}) < len(found):
+        raise ValueError(f"{case}: two profiles have the same source, quantity and line; name lines apart")
+    return lines
 
 
 def _stored(n: Numbers) -> _Profile:

@@ -1,7 +1,7 @@
 """Stored stresses of a case: the plane y = 0 for the report, files for ParaView.
 
-Every file carries the case file it came from. Those for ParaView, the finite element mesh and boxes of the
-semi-analytical method, have their checksums in a file beside them that checks itself.
+Every file carries the case file it came from. Those for ParaView, a plane of the finite elements and boxes of
+the semi-analytical method, have their checksums in a file beside them that checks itself.
 """
 
 import hashlib
@@ -78,9 +78,10 @@ def fields_path(folder: Path, name: str) -> Path:
 def write_fields(case: Case, solutions: Mapping[str, Solution], folder: Path) -> None:
     """Write the fields of ``solutions`` into ``folder``/fields, the file of checksums last.
 
-    NAME-fem.vtu : the plane y = 0, quadratic triangles.   NAME-semi.vtm : an index of NAME-semi-layer-K.vtr,
-    a box of a layer each, so that what jumps at an interface has both its values. All in metres, z into the
-    solid; fields "sigma_xx [Pa]" ..., "von_mises [Pa]", "displacement [m]", cells with their "layer".
+    NAME-fem.vtm : an index of NAME-fem-layer-K.vtr, the plane y = 0 of a layer each, so that what jumps at an
+    interface has both its values; NAME-fem-far.vtm, the same ten times as wide; NAME-semi.vtm, boxes. All in
+    um, z into the solid; fields "sigma_xx [Pa]" ..., "von_mises [Pa]", "displacement [m]", cells with their
+    "layer".
     A method that fails leaves its message. Raises StoreError where files cannot be written.
     """
     path = fields_path(folder, case.name)

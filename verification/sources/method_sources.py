@@ -108,6 +108,6 @@ METHOD_SOURCES = (
         package="fem_reference",
         coarse={"size": 0.2},
         coarse_stress={"size": 0.17},
-        fields="mesh",
+        fields="plane",
     ),
 )

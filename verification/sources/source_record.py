@@ -58,7 +58,7 @@ class Source:
     package : module or package that the fingerprint of its stored solutions is taken of.
     coarse, coarse_stress : keywords of the coarse solves of the invariants, for scalars and for stresses.
     equation : what it solves, where another source solves it too, in code of its own.
-    fields : how its fields are written for ParaView, "mesh" or "boxes"; "" where they are not.
+    fields : how its fields are written for ParaView, "plane" or "boxes"; "" where they are not.
     """
 
     name: str

@@ -192,3 +192,23 @@ def test_values_of_the_shipped_cases_are_counted_as_stated_in_the_readme():
     counted = sum(int(item.counted.sum()) for item in columns)
     recomputed = sum(len(item.text) for item in columns if item.seen == RECOMPUTED)
     assert (counted, cells - counted - recomputed, recomputed) == COUNTS
+
+
+def test_a_column_read_twice_stands_on_lines_of_its_own(files):
+    again = ', at = { z = 0.0, x = "depth", unit = "in" }, '
+    twice = TOML.replace(
+        "column = [",
+        'column = [\n{ name = "s", quantity = "sigma_xx", unit = "psi"' + again.rstrip(", ") + " },"
+        '\n{ name = "s", quantity = "sigma_zz", unit = "psi", factor = 2.0 },',
+    )
+    lines = [(c.profile.quantity, c.profile.line) for c in files(twice).columns if c.column == "s"]
+    assert len(set(lines)) == 3
+    assert lines[1][1] == "axis, t, column s"
+    assert lines[2] == ("sigma_zz", "axis, t, column s as sigma_zz")
+
+
+@pytest.mark.parametrize("name", published_cases())
+def test_a_name_of_a_line_has_one_set_of_points_and_each_quantity_once(name):
+    profiles = [item.profile for item in read_published(published_cases()[name]).columns]
+    assert len({(p.quantity, p.line) for p in profiles}) == len(profiles)
+    assert len({(p.line, p.position.tobytes()) for p in profiles}) == len({p.line for p in profiles})

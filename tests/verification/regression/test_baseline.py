@@ -22,7 +22,7 @@ from verification.regression.baseline_change import (
     regression_json,
     updated,
 )
-from verification.regression.baseline_file import path_in, read_baseline, write_baseline
+from verification.regression.baseline_file import path_in, points_by_line, read_baseline, write_baseline
 from verification.regression.number_drift import RELATIVE, State, drift, measured
 from verification.report.report_material import Material
 from verification.report.report_page import report_json
@@ -274,3 +274,18 @@ def test_the_shipped_baseline_is_whole_small_and_has_its_reasons():
     assert set(stored.manifests) == set(stored.cases)
     assert path_in(BASELINE).stat().st_size < 1_200_000  # 492,000 numbers, 2.4 bytes each
     assert all(update.why and update.when and update.versions for update in stored.history)
+
+
+def test_numbers_that_could_be_taken_for_others_are_not_stored(tmp_path):
+    stored = read_baseline(BASELINE)
+    assert stored is not None
+    for name, numbers in stored.cases.items():
+        points_by_line(name, numbers)
+    known = baseline_of(RESULT)
+    first, *rest = known.cases[RESULT.name]
+    for wrong, message in (
+        ([first, first, *rest], "same source, quantity and line"),
+        ([first, replace(first, quantity="other", position=first.position + 1.0), *rest], "other points"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            write_baseline(tmp_path, replace(known, cases={RESULT.name: tuple(wrong)}))
