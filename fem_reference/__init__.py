@@ -12,6 +12,7 @@ from .levels import NotConverged
 from .off_axis import PressedSolid, check_pressure
 from .shaped_contact import ShapedContact, solve_shape
 from .solved_contact import Solution
+from .vtu import write_vtu
 
 __all__ = [
     "NotConverged",
@@ -22,4 +23,5 @@ __all__ = [
     "solve",
     "solve_prescribed",
     "solve_shape",
+    "write_vtu",
 ]

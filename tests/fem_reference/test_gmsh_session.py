@@ -11,7 +11,7 @@ import gmsh
 import numpy as np
 import pytest
 
-from fem_reference import solve
+from fem_reference import solve, write_vtu
 from fem_reference.gmsh_session import session
 from fem_reference.mesh import Grading, meridian_mesh
 
@@ -173,6 +173,28 @@ def test_stretching_keeps_depths_and_moves_the_edge():
     np.testing.assert_allclose(1.03 * (1 + m.length * np.sinh(xi)), m.points[0], rtol=0, atol=1e-12)
     np.testing.assert_allclose(m.length * np.sinh(zeta), m.points[1], rtol=0, atol=1e-12)
     assert m.length == pytest.approx(np.sqrt(0.5))
+
+
+def test_vtu_holds_layers_and_both_sides_of_the_interface(tmp_path):
+    import meshio
+
+    s = quick(friction=0.3)
+    path = write_vtu(s, tmp_path / "contact.vtu")
+    read = meshio.read(path)
+    layer = read.cell_data["layer"][0]
+    assert set(layer) == {0, 1}
+    cells = read.cells_dict["triangle6"]
+    x, _, z = read.points.T
+    assert 15 * s.contact_radius < x.max() < 20 * s.contact_radius
+    on_interface = np.isclose(z, 5e-5, rtol=1e-12, atol=0)
+    upper, lower = (np.intersect1d(np.flatnonzero(on_interface), cells[layer == k]) for k in (0, 1))
+    assert np.intersect1d(upper, lower).size == 0
+    near = upper[np.abs(x[upper]) < 1e-4]
+    expected = s.stress(x[near], 0.0, z[near], layer=0)[0, 0]
+    np.testing.assert_allclose(read.point_data["sigma_xx [Pa]"][near], expected, rtol=1e-12)
+    assert x.min() < 0 < x.max()
+    with pytest.raises(ValueError, match=r"\.vtu"):
+        write_vtu(s, tmp_path / "contact.txt")
 
 
 PIPE = """
