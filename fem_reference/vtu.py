@@ -1,8 +1,8 @@
 """The mesh of a solution for ParaView, written by meshio.
 
 Vertices on an interface are written once per layer, so that sigma_xx is discontinuous there. VTK finds points
-in a mesh with a tolerance that is relative to the mesh's width: sample the boxes of ``coatcheck run --fields``;
-this file shows the elements themselves.
+in a mesh with a tolerance that is relative to the mesh's width: sample the boxes of ``run --fields``; this
+file shows the elements themselves.
 """
 
 from os import PathLike
