@@ -66,7 +66,7 @@ def contents(material: Material) -> dict[str, Any]:
         "answered": _answered(material),
         "chart": chart(material),
         "worth": worth(material),
-        "left_out": _left_out(material),
+        "left_out": left_out(material.results),
         "shaped": any(result.problem.get("indenter") for result in material.contacts),
     }
 
@@ -135,13 +135,13 @@ def _largest(material: Material) -> list[str]:
     return texts
 
 
-def _left_out(material: Material) -> tuple[float, int]:
+def left_out(results: Sequence[CaseResult]) -> tuple[float, int]:
     """The widest zone at the edge that is not judged [% of a], the number of comparisons with one."""
     zones = [
         CLEAR
         if result.problem.get("indenter") and claim.line.startswith(("off plane", "oblique", "interface"))
         else claim.edge
-        for result in material.results
+        for result in results
         for claim, _ in result.verdicts
     ]
     return 100 * max(zones, default=0.0), sum(zone > 0 for zone in zones)
