@@ -55,7 +55,8 @@ def difference(result: CaseResult, quantity: str) -> float | None:
 
 HEADLINE = r"""
 $p_0$, $a$, $\delta$: relative difference between both methods; a dash where they are not compared. Lines: the
-largest difference of stresses and pressures over the smaller of $p_h$ and $p_0$, of displacements over the smaller of $\delta_h$ and $\delta$.
+largest difference of stresses and pressures over the smaller of $p_h$ and $p_0$, of displacements
+over the smaller of $\delta_h$ and $\delta$.
 """
 
 

@@ -31,8 +31,8 @@ from verification.page.page_parts import (
     tally,
     words,
 )
+from verification.page.plots import draw_histogram
 from verification.page.source_labels import pair_label, source_label
-from verification.page.svg_loglog import draw_histogram
 from verification.report.report_material import Evidence, Material
 from verification.report.report_words import stated
 from verification.report.sections.accuracy_section import accuracies
