@@ -41,7 +41,7 @@ Box = tuple[float, float, float, float]  # left, top, width, height
 
 @lru_cache(maxsize=16)
 def _empty(width: float, height: float) -> tuple[Figure, dict[Box, Axes]]:
-    """A figure of matplotlib with its axes by their boxes, used again: to make axes takes most of the time."""
+    """A figure with its axes by their boxes, used again: to make axes takes most of the time."""
     return Figure(figsize=(width / 72, height / 72), facecolor="none", edgecolor="none"), {}
 
 
@@ -164,7 +164,8 @@ def inline(
 ) -> Markup:
     """The SVG of matplotlib for a page: compact, its colours those of the page, its symbols typeset.
 
-    label : what it shows, for a screen reader.   data : further attributes, escaped.   under, over : further SVG.
+    label : what it shows, for a screen reader.   data : further attributes, escaped.
+    under, over : further SVG.
     """
     box = re.search(r'viewBox="([^"]*)"', svg)
     assert box is not None
@@ -177,8 +178,8 @@ def inline(
         body = body.replace(colour, f"var(--{role})")
     for _ in range(4):  # groups within groups
         body = _BARE.sub(r"\1", body)
-    # names of clipped areas and of marks: figures of a page must not take each other's
-    own = f"{crc32(body.encode()):08x}"
+    # names of clipped areas and of marks: figures of a page must not take each other's, so labels differ
+    own = f"{crc32((label + body).encode()):08x}"
     body = re.sub(r'(id="|url\(#|href="#)([pmDC][0-9A-Za-z_-]+)', rf"\1f{own}\2", body)
     body = re.sub(r">\s+<", "><", body[: body.rindex("</svg>")])
     more = f" {data}" if data else ""

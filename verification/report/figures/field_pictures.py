@@ -221,7 +221,7 @@ LOWEST, HIGHEST = -8.0, -3.0  # exponents of the difference over p_h; the same i
 EVERY = 3  # of the columns in the table of numbers
 
 
-def pictures(plane: Plane | None, a_h: float, p_h: float) -> dict[str, Any] | None:
+def pictures(plane: Plane | None, a_h: float, p_h: float, case: str = "") -> dict[str, Any] | None:
     """Von Mises stress, sigma_xx and sigma_xz side by side, below them the differences of both methods.
 
     With caption and the numbers as CSV; None where there is nothing to draw.
@@ -246,14 +246,15 @@ def pictures(plane: Plane | None, a_h: float, p_h: float) -> dict[str, Any] | No
         values = np.concatenate([f.ravel() for f in shown])
         known = values[np.isfinite(values)]
         span = f"{plain(known.min(), 3)} to {plain(known.max(), 3)}" if known.size else "not finite"
-        fields.append(panel(shown, _colours(quantity, shown), title, f"{title} by {name}", f"{name}, {span}"))
+        label = f"{title} by {name}, {case}"
+        fields.append(panel(shown, _colours(quantity, shown), title, label, f"{name}, {span}"))
         if len(sources) == 2:
             apart = [np.abs(one - other) for one, other in zip(*by.values(), strict=True)]
             largest = max(float(g.max()) for g in apart)
             exponents = [np.log10(np.maximum(g, 10.0 ** (LOWEST - 1))) for g in apart]
             top = max(HIGHEST, float(np.ceil(np.log10(largest)))) if 0 < largest < np.inf else HIGHEST
             colours = Scale(LOWEST, top, "cividis", logarithmic=True)
-            label = f"difference of both methods in {title}, logarithmic"
+            label = f"difference of both methods in {title}, logarithmic, {case}"
             note = f"largest {scientific(largest)}"
             gaps.append(panel(exponents, colours, f"difference in {title}", label, note))
     return {

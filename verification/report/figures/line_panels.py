@@ -116,7 +116,7 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
     figure = draw_curves(
         curves,
         differences,
-        label=f"{symbol_of(quantity)} on {line} by every source, with differences",
+        label=f"{symbol_of(quantity)} on {line} by every source, with differences, {result.name}",
         coordinate=f"{coordinate_of(line)} / a_h",
         cap=cap,
         unjudged=_unjudged(edge, contact_radius(result), a_h, curves),
