@@ -42,7 +42,7 @@ Box = tuple[float, float, float, float]  # left, top, width, height
 @lru_cache(maxsize=16)
 def _empty(width: float, height: float) -> tuple[Figure, dict[Box, Axes]]:
     """A figure with its axes by their boxes, used again: to make axes takes most of the time."""
-    return Figure(figsize=(width / 72, height / 72), facecolor="none", edgecolor="none"), {}
+    return Figure(figsize=(width / 72, height / 72), frameon=False), {}
 
 
 class Chart:
