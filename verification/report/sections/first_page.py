@@ -65,6 +65,7 @@ def contents(material: Material) -> dict[str, Any]:
         "answered": _answered(material),
         "agreements": agreements(material),
         "shared": shared(material),
+        "imports": bool(material.evidence.parts),
         "chart": chart(material),
         "worth": worth(material),
         "model": model_costs(material),
@@ -266,7 +267,7 @@ def agreements(material: Material) -> list[Worth]:
         held = [one.outcome is Outcome.AGREES for one in found[kind]]
         gaps = [one.difference for one in found[kind] if one.difference is not None]
         note = f"largest difference {scientific(max(gaps))}" if gaps else ""
-        rows.append(Worth(f"{kind}", _share(held), "#credibility", all(held), note))
+        rows.append(Worth(f"{kind}", _share(held), "#cases", all(held), note))
     if again:
         text = "friction leaves the contact as it is"
         rows.append(Worth("not counted again", str(len(again)), "#cases", None, text))

@@ -24,7 +24,6 @@ from verification.study.pages.thickness_page import rounded
 from verification.study.study_plan import Study
 from verification.study.study_table import read_columns
 
-
 WIDE = 8.0  # last load over the first, from which the ramp is drawn on a logarithmic axis
 
 
