@@ -30,7 +30,7 @@ ROLES = {
     )
 }
 # In figures for print: what follows the page, where one of them is shown on it.
-PRINT = {"ink": "#000000", "paper": "#ffffff", "grid": "#cccccc", "muted": "#444444"}
+PRINT = {"ink": "#000000", "paper": "#ffffff", "grid": "#cccccc", "muted": "#444444", "agrees": "#d5efe1"}
 HUGE = 1e12  # larger numbers are failures; a curve has a gap there
 _SETTINGS: Any = {"svg.fonttype": "none", "svg.hashsalt": "coatcheck", "path.simplify_threshold": 0.15}
 _NUMBER = re.compile(r"(\d\.\d)\d+")

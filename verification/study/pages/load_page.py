@@ -168,7 +168,7 @@ def _maps(study: Study, found: Sequence[Critical]) -> list[Drawn]:
                     for x, values in zip(h, band, strict=True)
                 ]
                 shown = np.where(np.isfinite(band), band, 10 * high)
-                axes.fill_between(h, shown[:, 0], shown[:, 2], color=pale(colour), linewidth=0, alpha=0.6)
+                axes.fill_between(h, shown[:, 0], shown[:, 2], color=colour, linewidth=0, alpha=0.27)
                 axes.plot(h, shown[:, 1], color=colour, label=mode, marker=".", markersize=3)
             first = np.array([one.first[1] for one in members])
             axes.plot(h, np.where(np.isfinite(first), first, 10 * high), color="black", linewidth=0.9,
