@@ -109,7 +109,7 @@ def _imported(nodes: list[ast.AST]) -> Iterator[str]:
 
 def _used(nodes: list[ast.AST]) -> Iterator[str]:
     """Full name of everything of NumPy and SciPy that is imported or reached through a dot."""
-    names = {}
+    names: dict[str, str] = {}
     for node in nodes:
         if isinstance(node, ast.Import):
             names |= {alias.asname or alias.name: alias.name for alias in node.names if alias.asname}

@@ -155,7 +155,7 @@ def written(figure: Figure) -> str:
     """The SVG of a ``figure``; the same figure always gives the same text."""
     out = io.StringIO()
     with mpl.rc_context(_SETTINGS):
-        FigureCanvasSVG(figure).print_svg(out, metadata={"Date": None})  # type: ignore[no-untyped-call]
+        FigureCanvasSVG(figure).print_svg(out, metadata={"Date": None})
     return out.getvalue()
 
 

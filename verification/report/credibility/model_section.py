@@ -166,8 +166,10 @@ def _draw(x: Array, y: Array, plane: Array, label: str) -> Markup:
     for level in LEVELS:
         if size.min() < level < size.max():
             found = chart.axes.contour(x, y, size, (level,), colors=[ROLES["ink"]], linewidths=0.9)
-            longest = max((one.vertices for one in found.get_paths()), key=len)
-            chart.note(*longest[len(longest) // 2], _percent(level))
+            lines = [np.asarray(one.vertices, dtype=float) for one in found.get_paths()]
+            longest = max(lines, key=lambda line: line.shape[0])
+            x_text, y_text = longest[len(longest) // 2]
+            chart.note(float(x_text), float(y_text), _percent(level))
     chart.ticks(_ticks(THICKNESSES, x), _ticks((0.1, 0.25, 1, 4, 10), y), WORDS["thickness"])
     chart.note(x[0], y[-1], WORDS["ratio"], by=(4, 13))
     return figure.drawing(f"{label} over {WORDS['thickness']} and {WORDS['ratio']}")
