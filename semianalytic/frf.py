@@ -6,10 +6,12 @@ layer the Papkovich-Neuber potentials of the plane problem (L, z) are written as
     phi + s psi = d1 / k^2,  psi = d2 / k,  d(s) = e^{-ks} [[1, ks], [0, 1]] d(0)    down, s from the top
     phi - t psi = g1 / k^2,  psi = g2 / k,  g(t) = e^{-kt} [[1,-kt], [0, 1]] g(0)    up, t from the bottom
 
-so that every field is a combination of (d1, d2, g1, g2) at its depth with coefficients free of k (theory
-sheet, eqs. of 2.1, with the origin moved to the top, respectively the bottom, of the layer). The solid below
-a layer enters as a reflection g = R d at its bottom. R is carried from the substrate up, the amplitudes from
-the surface down; each step is a 2 x 2 matrix without any growing exponential: k h = 1e-6 is as safe as 1e4.
+so that every field is a combination of (d1, d2, g1, g2) at its depth with coefficients free of k: the
+potentials of O'Sullivan and King, J. Tribol. 110 (1988) 235-240, with the origin moved to the top,
+respectively the bottom, of the layer (derived here). The solid below a layer enters as a reflection g = R d
+at its bottom (Kennett, Seismic Wave Propagation in Stratified Media, Cambridge University Press, 1983, for
+waves). R is carried from the substrate up, the amplitudes from the surface down; each step is a 2 x 2 matrix
+without any growing exponential: k h = 1e-6 is as safe as 1e4.
 
 Signs: stress positive in tension, sigma_zz = -p, sigma_Lz = i T0, sigma_Tz = t at z = 0; u_z into the solid.
 ``coatings`` ((E, nu, thickness), ...) from the surface down, ``substrate`` (E, nu); Pa, m.
@@ -52,7 +54,7 @@ def _one_coating_excess(
 ) -> Array:
     """M - 1 of a single coating in closed form: lam and kap are its two reflection coefficients.
 
-    With L = 1 - lam, Q = 1 - kap, th = exp(-2x), x = k h the theory sheet's denominator is
+    With L = 1 - lam, Q = 1 - kap, th = exp(-2x), x = k h the denominator is
 
         1 - (lam + kap + 4 kap x^2) th + lam kap th^2
             = (1 - th) (L th + Q) + L Q th^2 + 4 kap th (sinh^2 x - x^2),

@@ -14,7 +14,7 @@ split      M = 1 + c e^(-b k) + R(k). The first two are Love's rectangle at the 
            serves every length from the thinnest coating to the whole grid at once: within 4e-10 of
            quadrature for modulus ratios 0.01 to 100.
 plain      M/k times the transform of the patch, aliases summed, FFT on an enlarged domain: Liu and Wang
-           (J. Tribol. 124 (2002) 36-45), the conversion of the source paper. The kernel is singular at
+           (J. Tribol. 124 (2002) 36-45). The kernel is singular at
            k = 0 and slow to decay; its error is 0.4 % at the loaded patch and more far away.
 """
 
@@ -98,7 +98,7 @@ def _corner(g: Function, on_disc: Function, n: int, d: float, near: float) -> Ar
 def plain_coefficients(
     n: int, d: float, excess: Function, *, enlarge: int = 4, aliases: int = 2, threads: int = 1
 ) -> Array:
-    """The source paper's conversion: C by FFT of M/k times the transform of the patch shape.
+    """Conversion of Liu and Wang: C by FFT of M/k times the transform of the patch shape.
 
     Liu and Wang (2002) eq. 13 with ``aliases`` AL on either side and the domain ``enlarge`` times the
     kernel's. At k = 0, where M/k is infinite, the mean of M(0)/k over the frequency cell.

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,6 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from semianalytic.ring_quadrature import gauss_legendre
 
 Array = NDArray[np.floating]
+
+JUMP = 1e-4  # change of the pressure at one radius, over its largest magnitude, that counts as a jump
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +32,28 @@ class Prescribed:
         inside = r <= self.radius
         value[inside] = self.function(r[inside])
         return value
+
+    @cached_property
+    def singular_radii(self) -> tuple[float, ...]:
+        """Radii [m] at which p jumps or is not finite, where the stress of the surface has no value.
+
+        Halving the interval of the larger change, from 1024 intervals on, leaves a change only at a jump; of
+        two jumps in one interval the larger is found.
+        """
+        low, high = np.arange(1024) / 1024 * self.radius, np.arange(1, 1025) / 1024 * self.radius
+        with np.errstate(all="ignore"):
+            ends = np.abs(self.pressure(np.array([0.0, self.radius])))
+            p_low, p_high = self.pressure(low), self.pressure(high)
+            size = np.max(np.abs(p_low)[1:])
+            for _ in range(44):
+                middle = (low + high) / 2
+                p = self.pressure(middle)
+                left = ~(np.abs(p_high - p) > np.abs(p - p_low))
+                high, p_high = np.where(left, middle, high), np.where(left, p, p_high)
+                low, p_low = np.where(left, low, middle), np.where(left, p_low, p)
+            inside = high[np.abs(p_high - p_low) > JUMP * size]
+        rim = [self.radius] if not ends[1] <= JUMP * size else []
+        return (*([] if np.isfinite(ends[0]) else [0.0]), *map(float, np.unique(inside)), *rim)
 
     def of_square(self, square: Array) -> Array:
         """p [Pa] of the square of r [m^2]."""

@@ -9,8 +9,9 @@ tables over rho, one a depth; where many depths share a layer, from those of a f
 the closed form leaves the local terms sigma_zz = -p, sigma_xz = -q, (sigma_xx + sigma_yy)/2 = -(1 + 2 nu)
 p/2 (Johnson 1985, section 3.4).
 
-"Stress analysis of elastic coated solids in point contact", eqs. 1-4. Axes: z down; tension positive; SI.
-Rough pressures, and planes of many points: ``patch_field``.
+G: Johnson, Contact Mechanics (1985), sections 3.2 and 3.6, and the layers' response; the sum over rings was
+derived here (manual, "Stresses below the patches"). Axes: z down; tension positive; SI. Rough pressures, and
+planes of many points: ``patch_field``.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,6 +1,7 @@
 """Imports of methods or references, read from their installed source.
 
-This shows what code they share. Equations that they share are named in ``report.credibility.statement``.
+This shows what code they share, down to the functions of NumPy and SciPy that both call. Equations that
+they share are named in the registry of sources.
 """
 
 import ast
@@ -25,6 +26,7 @@ class Part:
     modules : every module outside the standard library that it imports, its own left out.
     forbidden : messages, one for each forbidden import.
     hidden : messages, one for each import that is resolved only at run time.
+    functions : full names of what it uses of NumPy and SciPy, numpy.linalg.solve.
     """
 
     name: str
@@ -33,6 +35,7 @@ class Part:
     modules: tuple[str, ...]
     forbidden: tuple[str, ...]
     hidden: tuple[str, ...]
+    functions: tuple[str, ...] = ()
 
     @property
     def packages(self) -> tuple[str, ...]:
@@ -50,10 +53,16 @@ def shared(first: Part, second: Part) -> tuple[str, ...]:
     return tuple(sorted(set(first.modules) & set(second.modules)))
 
 
+def shared_functions(first: Part, second: Part) -> tuple[str, ...]:
+    """What both use of NumPy and SciPy, by full names."""
+    return tuple(sorted(set(first.functions) & set(second.functions)))
+
+
 def imports_of(name: str, forbidden_packages: tuple[str, ...] = ()) -> Part:
     """Read every file of the package ``name``. Raises ValueError where there is no source to read."""
     folder = _folder(name)
     modules: set[str] = set()
+    functions: set[str] = set()
     forbidden, hidden = [], []
     files = statements = 0
     for path in sorted(folder.rglob("*.py")):
@@ -67,8 +76,17 @@ def imports_of(name: str, forbidden_packages: tuple[str, ...] = ()) -> Part:
                 forbidden.append(f"{name}/{place} imports {module}")
             if module.partition(".")[0] not in sys.stdlib_module_names and not within(f"{name}."):
                 modules.add(module)
+        functions.update(_used(nodes))
         hidden += [f"{name}/{place} calls {called}" for called in _called_by_name(nodes)]
-    return Part(name, files, statements, tuple(sorted(modules)), tuple(forbidden), tuple(hidden))
+    return Part(
+        name,
+        files,
+        statements,
+        tuple(sorted(modules)),
+        tuple(forbidden),
+        tuple(hidden),
+        tuple(sorted(functions)),
+    )
 
 
 def _folder(name: str) -> Path:
@@ -87,6 +105,24 @@ def _imported(nodes: list[ast.AST]) -> Iterator[str]:
         elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
             for alias in node.names:
                 yield f"scipy.{alias.name}" if node.module == "scipy" else node.module
+
+
+def _used(nodes: list[ast.AST]) -> Iterator[str]:
+    """Full name of everything of NumPy and SciPy that is imported or reached through a dot."""
+    names: dict[str, str] = {}
+    for node in nodes:
+        if isinstance(node, ast.Import):
+            names |= {alias.asname or alias.name: alias.name for alias in node.names if alias.asname}
+            names |= {alias.name.partition(".")[0]: alias.name.partition(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            names |= {alias.asname or alias.name: f"{node.module}.{alias.name}" for alias in node.names}
+    names = {short: full for short, full in names.items() if full.partition(".")[0] in ("numpy", "scipy")}
+    yield from (full for full in names.values() if "." in full)
+    for node in nodes:
+        if isinstance(node, ast.Attribute):
+            first, _, rest = ast.unparse(node).partition(".")
+            if first in names and rest.replace(".", "").replace("_", "").isalnum():
+                yield f"{names[first]}.{rest}"
 
 
 def _called_by_name(nodes: list[ast.AST]) -> Iterator[str]:

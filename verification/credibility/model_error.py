@@ -77,9 +77,14 @@ class Cost:
         return abs(self.change) + self.uncertainty
 
     @property
+    def percent(self) -> str:
+        """The size in per cent, with a bound where it is tiny."""
+        return _percent(self.size)
+
+    @property
     def words(self) -> str:
         """Size, quantity and assumption."""
-        return f"{_percent(self.size)} of the {self.name} ({self.assumption})"
+        return f"{self.percent} of the {self.name} ({self.assumption})"
 
 
 @dataclass(frozen=True)
@@ -180,7 +185,7 @@ def judged_quantities(claimed: Collection[str]) -> tuple[str, ...]:
 
 
 def _percent(size: float) -> str:
-    return f"{100 * size:.2g} %" if size >= LEAST else "0.0001 %"
+    return f"{100 * size:.2g} %" if size >= LEAST else "less than 0.0001 %"
 
 
 def _read(maps: AssumptionMaps, name: str, problem: CoatedContact) -> tuple[Change, Change]:

@@ -19,9 +19,11 @@ from verification.manual.baseline_numbers import FOLDER, baseline, largest, poin
 from verification.manual.markdown_text import paragraphs, shown, symbol, table, text
 from verification.manual.tour_output import WORKED, solved
 from verification.page.number_text import scientific
-from verification.problem.quantity import QUANTITIES
+from verification.problem.quantity import PEAKS, QUANTITIES
 from verification.report.credibility import model_section
 from verification.report.credibility.detection_sections import faults_section
+from verification.report.sections.first_page import left_out
+from verification.running.case_result import CaseResult
 from verification.sources.source_registry import METHODS, SOURCES
 
 SOURCE = Path(__file__).parent / "source"
@@ -34,12 +36,8 @@ def headline() -> str:
     rows = []
     for name in default_cases():
         result = stored(name)
-        cells = [
-            scientific(result_of.difference, 1)
-            for quantity in ("peak_pressure", "contact_radius", "approach")
-            for claim, result_of in result.verdicts
-            if (claim.quantity, claim.between) == (quantity, METHODS)
-        ]
+        scalars = ("peak_pressure", "contact_radius", "approach")
+        cells = [scientific(difference(result, quantity), 1) for quantity in scalars]
         exact = [largest(name, (method, "integral_equation"), *FIELDS) for method in METHODS]
         fields = [scientific(value, 1) for value in (largest(name, METHODS, *FIELDS), *exact)]
         rows.append([f"[{text(result.title)}](/cases/{name}.md)", *cells, *fields, str(len(result.verdicts))])
@@ -49,9 +47,16 @@ def headline() -> str:
     return f"{made}\n\n{table([*head, 'finite elements, exact', 'comparisons'], rows, 1)}\n{HEADLINE}"
 
 
+def difference(result: CaseResult, quantity: str) -> float | None:
+    """The relative difference of both methods in a number of the contact; None where it is not compared."""
+    found = {claim.quantity: one.difference for claim, one in result.verdicts if claim.between == METHODS}
+    return found.get(quantity)
+
+
 HEADLINE = r"""
-$p_0$, $a$, $\delta$: relative difference between both methods. Lines: the largest difference of stresses and
-pressures over the smaller of $p_h$ and $p_0$, of displacements over the smaller of $\delta_h$ and $\delta$.
+$p_0$, $a$, $\delta$: relative difference between both methods; a dash where they are not compared. Lines: the
+largest difference of stresses and pressures over the smaller of $p_h$ and $p_0$, of displacements
+over the smaller of $\delta_h$ and $\delta$.
 """
 
 
@@ -65,6 +70,24 @@ def totals() -> str:
         f"The default run solves {len(contacts)} cases. It judges {comparisons} comparisons at "
         f"{sum(map(points, contacts))} points and {invariants} invariants; the baseline holds "
         f"{known.last.numbers} numbers, those of the published cases included."
+    )
+
+
+def zones() -> str:
+    """Comparisons that leave out a zone at the contact edge; cases that compare no largest tension."""
+    results = [stored(name) for name in default_cases()]
+    share, count = left_out(results)
+    total = sum(len(result.verdicts) for result in results)
+    without = [
+        f"[{text(result.title)}](/cases/{result.name}.md)"
+        for result in results
+        if not {claim.quantity for claim, _ in result.verdicts} & set(PEAKS)
+    ]
+    return (
+        f"{count} of {total} comparisons, all of contacts that are not round, have no points within "
+        f"{share:.0f} % of $a$ of the contact edge. {len(results) - len(without)} of {len(results)} cases "
+        "also compare the largest tension of the surface and its place, which each source finds in its own "
+        f"solution; these do not: {'; '.join(without)}."
     )
 
 
@@ -194,6 +217,7 @@ def _day(when: str) -> str:
 _ALL: tuple[Callable[[], str], ...] = (
     headline,
     totals,
+    zones,
     published_counts,
     quantities,
     sources,

@@ -149,7 +149,7 @@ class Gallery:
 class Part:
     """A paragraph of a section with the figures and the tables it introduces, under a ``title`` or none.
 
-    folded : what the reader clicks to unfold all of it; "" where it lies open.
+    folded : what the reader clicks to unfold all of it; "" where it lies open.   anchor : of its title.
     """
 
     text: str
@@ -157,6 +157,7 @@ class Part:
     gallery: Gallery | None = None
     title: str = ""
     folded: str = ""
+    anchor: str = ""
 
     def __bool__(self) -> bool:
         """False where there is nothing to show."""
@@ -178,6 +179,16 @@ class Section:
     title: str
     parts: Sequence[Part]
     failures: Sequence[str] = ()
+
+
+def joined(anchor: str, title: str, sections: Iterable[Section | None]) -> Section | None:
+    """One section of several, each of the others under its own title; None of none."""
+    found = [one for one in sections if one is not None]
+    parts: list[Part] = []
+    for one in found:
+        parts += [Part("", title=one.title, anchor=one.anchor)] * (one.anchor != anchor)
+        parts += one.parts
+    return Section(anchor, title, parts, [text for one in found for text in one.failures]) if found else None
 
 
 def _cells_of(table: Table) -> list[list[str]]:

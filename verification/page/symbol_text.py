@@ -144,6 +144,7 @@ def drawn(text: str) -> Markup:
     return Markup("".join(written))
 
 
+@lru_cache(maxsize=8192)
 def unicode(text: str) -> str:
     """``text`` in plain Unicode, for names that a screen reader or a tooltip gives."""
     return "".join(

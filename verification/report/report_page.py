@@ -14,7 +14,7 @@ from verification.credibility import accuracy_study
 from verification.guests.pages import guests_section
 from verification.page.html_page import rendered
 from verification.page.number_text import seconds
-from verification.page.page_parts import Part, Section
+from verification.page.page_parts import Part, Section, joined
 from verification.regression import baseline_section
 from verification.regression.baseline_change import regression_json
 from verification.report.credibility import credibility_statement, detection_sections, model_section
@@ -60,14 +60,28 @@ def _sections(material: Material) -> list[tuple[str, list[Section]]]:
         family_section.section(contacts),
     )
     evidence = (
-        credibility_statement.section(material, coverage),
+        joined(
+            "credibility",
+            "What an agreement is worth",
+            (
+                credibility_statement.section(material, coverage),
+                invariants_section.section(contacts, anchors),
+                _dated(detection_sections.faults_section(faults), older="faults" in found.older)
+                if faults
+                else None,
+                detection_sections.self_tests_section(found.self_tests),
+            ),
+        ),
+        joined(
+            "accuracy",
+            "Accuracy of the methods",
+            (
+                accuracy_section.section(contacts, anchors),
+                refinement_section.semianalytic_section(study),
+                refinement_section.finite_element_section(study),
+            ),
+        ),
         _dated(model_section.section(found.maps), older="maps" in found.older),
-        accuracy_section.section(contacts, anchors, coverage),
-        invariants_section.section(contacts, anchors),
-        refinement_section.semianalytic_section(study),
-        refinement_section.finite_element_section(study),
-        _dated(detection_sections.faults_section(faults), older="faults" in found.older) if faults else None,
-        detection_sections.self_tests_section(found.self_tests),
         baseline_section.section(found.baseline, anchors),
         guests_section.section(),
         validation_page.section(measured) if (measured := validation_page.shipped()) else None,

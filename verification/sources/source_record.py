@@ -14,11 +14,11 @@ Solver = Callable[..., Any]  # (problem, numerics) -> Solution, of a LoadingCurv
 class Independence(StrEnum):
     """What the two sources of a comparison have in common, the most independent first."""
 
-    NOTHING = "methods that share nothing"
-    EQUATION = "methods that share an equation"
+    NOTHING = "without a common equation"
+    EQUATION = "with a common equation, coded twice"
     START = "one method starting from the other"
-    CLOSED = "closed forms"
-    PRINT = "printed tables"
+    CLOSED = "with closed forms"
+    PRINT = "with published tables"
 
 
 class Kind(StrEnum):

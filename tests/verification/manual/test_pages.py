@@ -5,13 +5,18 @@ import re
 
 import pytest
 
+from verification.cases.case_file import default_cases, read_case
 from verification.guests.vectors.open_digits import FILE, shipped
 from verification.manual import manual_build
-from verification.manual.baseline_numbers import baseline, largest
+from verification.manual.baseline_numbers import baseline, largest, stored
 from verification.manual.generated_blocks import BLOCKS
 from verification.manual.sphinx_extension import restructured
 from verification.manual.tour_output import WORKED
 from verification.page.number_text import scientific
+from verification.problem.line_profile import EDGE_LINE
+from verification.problem.quantity import PEAKS
+from verification.running.case_result import describe
+from verification.sources.source_registry import METHODS
 
 SLOW = ("solved", *WORKED)  # solve problems
 
@@ -42,8 +47,44 @@ def test_every_block_of_the_manual_has_content():
     assert empty in ([], ["more_pages"])  # no page is added beyond those that the index names
 
 
+def test_every_cell_of_the_accuracy_table_is_that_of_its_column():
+    head, _, *rows = (line for line in BLOCKS["headline"]().splitlines() if line.startswith("|"))
+    heads = [cell.strip() for cell in head.strip("|").split("|")]
+    symbols = {"$p_0$": "peak_pressure", "$a$": "contact_radius", r"$\delta$": "approach"}
+    assert len(rows) == len(default_cases())
+    missing = 0
+    for name, line in zip(default_cases(), rows, strict=True):
+        cells = dict(zip(heads, (cell.strip() for cell in line.strip("|").split("|")), strict=True))
+        result = stored(name)
+        assert cells["comparisons"] == str(len(result.verdicts))
+        for symbol, quantity in symbols.items():
+            (found,) = [
+                v.difference for c, v in result.verdicts if (c.quantity, c.between) == (quantity, METHODS)
+            ] or [None]
+            missing += found is None
+            assert cells[symbol] == scientific(found, 1), (name, quantity)
+        exact = largest(name, ("fem_reference", "integral_equation"), "stress", "pressure", "displacement")
+        assert cells["finite elements, exact"] == scientific(exact, 1)
+    assert missing  # of a contact whose radius is not compared
+
+
+def test_the_zones_left_out_are_those_of_the_cases():
+    said = BLOCKS["zones"]()
+    zoned = tension = 0
+    for name, path in default_cases().items():
+        claims = read_case(path).claims
+        tension += any(claim.quantity in PEAKS for claim in claims)
+        if "indenter" in describe(read_case(path).problem):
+            zoned += sum(claim.line not in ("contact", "surface", EDGE_LINE, "axis") for claim in claims)
+        zoned += sum(claim.edge > 0 for claim in claims)
+        assert (f"/{name}.md" in said) is not any(claim.quantity in PEAKS for claim in claims)
+    assert said.startswith(f"{zoned} of ")
+    assert f" {tension} of {len(default_cases())} cases" in said
+
+
 def test_the_numbers_of_the_readme_are_those_of_the_baseline_and_the_records():
     text = " ".join((manual_build.SOURCE.parents[2] / "README.md").read_text(encoding="utf-8").split())
+    assert len(text.split()) <= 900
     known = baseline()
     contacts = [name for name in known.cases if not known.published(name)]
     comparisons = sum(len(c.pairs) for name in contacts for c in known.manifests[name].comparisons)

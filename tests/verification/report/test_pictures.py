@@ -45,7 +45,7 @@ def test_each_stress_has_its_difference_below(plane):
     found = pictures(plane, *SCALES)
     assert len(found["panels"]) == 6
     assert "1.0e-5" in found["panels"][4].note
-    assert 'class="s-cap"' in found["panels"][0].figure
+    assert "stroke: var(--cap)" in found["panels"][0].figure
     assert plane_difference(plane, HERTZ.peak_pressure) == pytest.approx(1e-5, rel=1e-6)
 
 

@@ -2,6 +2,7 @@
 
 import csv
 import io
+import itertools
 import re
 from dataclasses import replace
 
@@ -11,9 +12,10 @@ from markupsafe import Markup
 from synthetic_results import STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
+from verification.page.figures import Sheet, line
 from verification.page.number_text import aligned
+from verification.page.plots import Plot, Trail, panels
 from verification.page.source_labels import OUTCOMES, pair_style, source_style
-from verification.page.svg_plot import polyline
 from verification.page.symbol_text import drawn, typeset, unicode
 from verification.report.figures import line_panels
 from verification.report.figures.line_panels import case_figures
@@ -28,6 +30,7 @@ from verification.report.tables.case_tables import (
     failing_table,
 )
 from verification.report.tables.line_csv import line_csv
+from verification.sources.source_record import Style
 
 COATED = contact((2 * STEEL[0], 0.3, 1.0))
 
@@ -164,19 +167,40 @@ def test_csv_holds_every_number_behind_a_figure():
         assert columns[f"uncertainty of {name}"] == pytest.approx(profile.uncertainty, rel=6e-2)
 
 
-def test_a_simplified_curve_stays_within_a_tenth_of_a_unit_and_breaks_at_gaps():
-    x = np.linspace(0, 300, 400)
-    y = 100 * np.sin(x / 30)
+def test_a_curve_is_drawn_where_its_values_are_and_breaks_at_gaps():
+    x = np.linspace(0, 3, 400)
+    y = np.sin(3 * x)
     y[200] = np.nan
-    first, second = polyline(np.stack([x, y], axis=1)).split("M")[1:]
-    assert len(first) < 700
-    for part, known in ((first, x < x[200]), (second, x > x[200])):
-        start, steps = (
-            [float(n) for n in re.findall(r"-?[0-9]*\.?[0-9]+", some)] for some in part.split("l")
-        )
-        points = np.cumsum([start, *np.reshape(steps, (-1, 2))], axis=0)
-        np.testing.assert_allclose(np.interp(x[known], *points.T), y[known], atol=0.4)
-        assert np.abs(points[:, 1] - 100 * np.sin(points[:, 0] / 30)).max() < 0.4
+    sheet = Sheet(320, 240)
+    chart = sheet.chart((40.0, 10.0, 270.0, 200.0), (0.0, 3.0), (-1.0, 1.0))
+    line(chart.axes, x, y, Style("semi"))
+    chart.note(1.5, 0.0, "p_h")
+    found = str(sheet.drawing("a <curve>"))
+    (path,) = re.findall(r'<path d="([^"]*)"[^>]*var\(--semi\)', found)
+    first, second = path.strip("M").split("M")
+    for part, known in ((first, slice(0, 200)), (second, slice(201, 400))):
+        points = np.array([[float(n) for n in pair.split()] for pair in part.split("L")])
+        expected = [chart.place(a, b)[1] for a, b in zip(x[known], y[known], strict=True)]
+        np.testing.assert_allclose(np.interp(40 + 90 * x[known], *points.T), expected, atol=0.4)
+    assert 'aria-label="a &lt;curve&gt;"' in found
+    assert "<tspan" in found
+    assert "#" not in re.sub(r"url\(#|id=|href=\"#", "", found)
+    again = Sheet(320, 240)  # of the same size: nothing of the one before is left
+    again.chart((40.0, 10.0, 270.0, 200.0), (0.0, 3.0), (-1.0, 1.0))
+    assert "--semi" not in again.drawing("empty")
+
+
+def test_texts_of_ticks_never_print_over_each_other():
+    trail = Trail((33.0, 49.0, 65.0, 97.0, 129.0, 257.0), (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7), Style("semi"))
+    ticks = tuple(float(n) for n in range(33, 258, 8))
+    (panel,) = panels([Plot("t", "l", "n", "N", ticks, [trail])])
+    shown = re.findall(
+        r'<text x="([^"]*)" y="[^"]*" class="f-ink" text-anchor="middle">(\d+)<', str(panel.figure)
+    )
+    places = [(float(x), 6.2 * len(text)) for x, text in shown]
+    assert len(places) > 5
+    for (x, width), (other, wide) in itertools.pairwise(places):
+        assert other - x > (width + wide) / 2
 
 
 def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
@@ -186,7 +210,7 @@ def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
         drawn.append((curves, differences, more))
         return Markup("")
 
-    monkeypatch.setattr(line_panels, "draw", record)
+    monkeypatch.setattr(line_panels, "draw_curves", record)
     result = result_of(COATED, errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}, points=201)
     case_figures(result)
     curves, differences, more = next(one for one in drawn if 'data-quantity="pressure"' in one[2]["data"])

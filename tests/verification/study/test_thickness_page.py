@@ -84,7 +84,7 @@ def test_every_failure_mode_has_its_figure_for_print_with_its_numbers(report):
 def test_page_needs_nothing_from_outside_and_names_the_failed_point(folder):
     text = (folder / "study.html").read_text()
     assert not re.search(r'(?:src|href)="(?!data:|#)', text)
-    assert 'src="data:image/svg+xml' in text
+    assert '<svg class="print"' in text
     assert "no luck" in text
 
 
@@ -124,7 +124,8 @@ def test_without_figures_there_still_is_a_page_with_its_answer(brief, tmp_path):
     folder, study = brief
     written = write_study_report(folder / "study.parquet", study, tmp_path, figures=False)
     assert [path.name for path in tmp_path.iterdir()] == ["study.html"]
-    assert escape(written.answer[0]) in written.page.read_text()
+    shown = " ".join(re.sub("<[^>]*>", " ", written.page.read_text()).split())
+    assert escape(written.answer[0]) in shown
 
 
 @pytest.mark.slow

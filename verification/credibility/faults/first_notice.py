@@ -4,8 +4,6 @@ from enum import StrEnum
 
 from verification.evidence.fault_record import COLUMNS, SMALLEST_CHANGE, Record, Row
 
-METHOD = ("conversion_fft", "conjugate_gradients", "grids", "edge", "stress", "rings")  # groups of its faults
-
 
 class Noticed(StrEnum):
     """What noticed a fault first, in this order; the first three count in the headline."""
@@ -52,8 +50,8 @@ def unused(row: Row) -> bool:
 
 
 def of_method(record: Record) -> tuple[Row, ...]:
-    """The faults in the parts of the method."""
-    return tuple(row for row in record.rows if row.group in METHOD)
+    """The faults in the semi-analytical method."""
+    return tuple(row for row in record.rows if row.where == "semianalytic")
 
 
 def noticed_by(record: Record, *kinds: Noticed) -> int:

@@ -29,9 +29,8 @@ from verification.page.page_parts import (
     row,
     words,
 )
+from verification.page.plots import DASHES, DOTS, MIXED, Curve, Difference, Plot, Trail, draw_curves, panels
 from verification.page.source_labels import OUTCOMES, row_css
-from verification.page.svg_curves import Curve, Difference, draw
-from verification.page.svg_loglog import DASHES, DOTS, MIXED, Plot, Trail, panels
 from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import CaseResult, RunInfo
@@ -274,7 +273,7 @@ def _figure(guest: str, result: CaseResult, claim: Claim, verdict: Verdict) -> P
     difference = np.abs(mine.value - exact.value) / top
     uncertainty = None if mine.uncertainty is None else mine.uncertainty / top
     worst = None if verdict.worst is None else verdict.worst / a
-    figure = draw(
+    figure = draw_curves(
         [Curve(x, exact.value / top, EXACT), Curve(x, mine.value / top, GUEST)],
         [Difference(x, difference, uncertainty, GUEST, worst, verdict.outcome is Outcome.INCONCLUSIVE)],
         label=f"{claim.quantity} on {claim.line} of {result.title}",

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from functools import partial
-from itertools import pairwise, product
+from itertools import product
 
 import numpy as np
 from markupsafe import Markup
@@ -10,9 +10,9 @@ from markupsafe import Markup
 from verification.credibility.model_error import ASSUMPTIONS
 from verification.credibility.model_error import WORDS as NAMES
 from verification.evidence.assumption_maps import WORDS, AssumptionMap, AssumptionMaps
+from verification.page.figures import ROLES, Sheet
 from verification.page.number_text import plain
 from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row, written
-from verification.page.svg_plot import Axes, drawing
 from verification.problem.array_types import Array
 from verification.sources.assumptions.contact_change import SCALARS
 
@@ -153,17 +153,26 @@ def _slice(one: AssumptionMap) -> dict[str, float]:
 
 def _draw(x: Array, y: Array, plane: Array, label: str) -> Markup:
     size = np.ma.masked_invalid(np.abs(plane))
-    axes = Axes((48.0, 5.0, 266.0, 207.5), (x[0], x[-1]), (y[0], y[-1]))
     known = np.where(np.ma.getmaskarray(size), 0.0, 1.0)
-    axes.filled(x, y, known, -1.0, 0.999, "muted", NO_ANSWER)
-    for (low, high), shade in zip(pairwise((*LEVELS, 1e9)), SHADES, strict=True):
-        axes.filled(x, y, size, low, high, COLOUR, shade)
+    figure = Sheet(320, 250)
+    chart = figure.chart((48.0, 5.0, 266.0, 207.5), (x[0], x[-1]), (y[0], y[-1]))
+    for z, levels, colour, shades in (
+        (known, (-1.0, 0.999), "muted", (NO_ANSWER,)),
+        (size, (*LEVELS, 1e9), COLOUR, SHADES),
+    ):
+        for low, high, shade in zip(levels[:-1], levels[1:], shades, strict=True):
+            if ((z > low) & (z <= high)).any():
+                chart.axes.contourf(x, y, z, (low, high), colors=[ROLES[colour]], alpha=shade)
     for level in LEVELS:
         if size.min() < level < size.max():
-            axes.contour(x, y, size, level, _percent(level))
-    axes.ticks(_ticks(THICKNESSES, x), _ticks((0.1, 0.25, 1, 4, 10), y), WORDS["thickness"])
-    axes.text(x[0], y[-1], WORDS["ratio"], by=(4, 13))
-    return drawing(320, 250, f"{label} over {WORDS['thickness']} and {WORDS['ratio']}", axes)
+            found = chart.axes.contour(x, y, size, (level,), colors=[ROLES["ink"]], linewidths=0.9)
+            lines = [np.asarray(one.vertices, dtype=float) for one in found.get_paths()]
+            longest = max(lines, key=lambda line: line.shape[0])
+            x_text, y_text = longest[len(longest) // 2]
+            chart.note(float(x_text), float(y_text), _percent(level))
+    chart.ticks(_ticks(THICKNESSES, x), _ticks((0.1, 0.25, 1, 4, 10), y), WORDS["thickness"])
+    chart.note(x[0], y[-1], WORDS["ratio"], by=(4, 13))
+    return figure.drawing(f"{label} over {WORDS['thickness']} and {WORDS['ratio']}")
 
 
 def _tint(colour: str, shade: float) -> Markup:

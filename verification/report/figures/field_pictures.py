@@ -12,19 +12,18 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import Any
 
-import contourpy
 import matplotlib as mpl
 import numpy as np
-from markupsafe import Markup, escape
+from markupsafe import Markup
+from matplotlib.axes import Axes
 from numpy.typing import NDArray
 from PIL import Image
 from scipy.interpolate import PchipInterpolator
 
+from verification.page.figures import ROLES, Box, Sheet, power_of_ten, round_ticks
 from verification.page.number_text import plain, scientific
 from verification.page.page_parts import Panel, written
 from verification.page.source_labels import source_label
-from verification.page.svg_plot import Axes, polyline, power_of_ten, round_ticks
-from verification.page.symbol_text import drawn, unicode
 from verification.problem.array_types import Array
 from verification.problem.quantity import IN_PLANE, von_mises
 from verification.report.report_words import stated
@@ -37,6 +36,7 @@ PIXELS = 200  # along x
 COLOURS = 96
 THINNEST = 0.14  # of the height of a picture: what a layer has at least, to be seen
 NO_NUMBER = (128, 128, 128)
+LEVEL: Any = {"colors": "#ffffff", "alpha": 0.6, "linewidths": 0.7, "linestyles": "-"}
 
 
 @dataclass(frozen=True)
@@ -139,25 +139,25 @@ def draw_field(raster: Array, frame: Frame, scale: Scale, *, label: str, lines: 
 
     raster : as from ``rasterised``, NaN is drawn grey.   lines : draw level lines at the ticks of the scale.
     """
-    width, height = LEFT + WIDTH + RIGHT, TOP + frame.height + BOTTOM
-    axes = Axes((LEFT, TOP, WIDTH, frame.height), (-frame.half, frame.half), (1.0, 0.0))
-    axes.ticks(round_ticks(-frame.half, frame.half, 5), _depths(frame), "x / a_h")
-    axes.add(_image(_address(coloured(raster, scale), ragged=not lines), LEFT, WIDTH, frame))
+    raster_of, bar = (LEFT, TOP, WIDTH, frame.height), (LEFT + WIDTH + 8, TOP, 10.0, frame.height)
+    figure = Sheet(LEFT + WIDTH + RIGHT, TOP + frame.height + BOTTOM)
+    chart = figure.chart(raster_of, (-frame.half, frame.half), (1.0, 0.0))
+    chart.ticks(round_ticks(-frame.half, frame.half, 5), _depths(frame), "x / a_h")
+    chart.note(-frame.half, 0.0, "z / a_h", by=(-LEFT + 4, -2), colour="muted")
     if lines:
-        axes.add(_level_lines(raster, frame, scale))
-    unit = WIDTH / (2 * frame.half)
-    across = "".join(f"M{LEFT} {TOP + at * frame.height:.1f}h{WIDTH:g}" for at in frame.shares[1:-1])
-    axes.add(f'<path d="{across}" class="edge casing"/><path d="{across}" class="edge"/>')
-    half, middle = min(frame.contact, frame.half) * unit, TOP + frame.height / 2
-    return Markup(
-        f'<svg class="figure field" viewBox="0 0 {width:.0f} {height:.1f}" role="img" '
-        f'aria-label="{escape(unicode(label))}">{axes.markup()}'
-        f'<path d="M{LEFT + WIDTH / 2 - half:.1f} {TOP - 3.5}h{2 * half:.1f}" class="s-cap" '
-        'stroke-width="4"/>'
-        f'<text x="10" y="{middle:.1f}" class="f-muted" '
-        f'text-anchor="middle" transform="rotate(-90 10 {middle:.1f})">{drawn("z / a_h")}</text>'
-        f"{_bar(frame, scale)}</svg>"
-    )
+        _level_lines(chart.axes, raster, frame, scale)
+    for at in frame.shares[1:-1]:
+        for colour, width in (("#ffffff", 2.4), ("#101418", 0.9)):
+            chart.axes.axhline(at, color=colour, linewidth=width)
+    half = min(frame.contact, frame.half)
+    contact: Any = {"color": ROLES["cap"], "linewidth": 4, "clip_on": False, "solid_capstyle": "butt"}
+    chart.axes.plot([-half, half], [-3.5 / frame.height] * 2, **contact)
+    colours = figure.chart(bar, (0.0, 1.0), (scale.low, scale.high))
+    for value, text in scale.ticks:
+        colours.note(1.0, value, text, by=(4, 3.5))
+    under = _image(_address(coloured(raster, scale), ragged=not lines), raster_of)
+    under += _image(_address(_palette(scale)[::-1, None, :]), bar)
+    return figure.drawing(label, css="figure field", under=under)
 
 
 def _depths(frame: Frame) -> list[tuple[float, str]]:
@@ -172,9 +172,10 @@ def _depths(frame: Frame) -> list[tuple[float, str]]:
     return found
 
 
-def _image(address: str, left: float, width: float, frame: Frame) -> str:
+def _image(address: str, box: Box) -> str:
+    left, top, width, height = box
     return (
-        f'<image x="{left}" y="{TOP}" width="{width}" height="{frame.height:.1f}" preserveAspectRatio="none" '
+        f'<image x="{left:g}" y="{top:g}" width="{width:g}" height="{height:.1f}" preserveAspectRatio="none" '
         f'href="{address}"/>'
     )
 
@@ -201,35 +202,17 @@ def _address(pixels: NDArray[np.uint8], ragged: bool = False) -> str:
     return f"data:image/webp;base64,{base64.b64encode(written.getvalue()).decode()}"
 
 
-def _level_lines(raster: Array, frame: Frame, scale: Scale) -> str:
+def _level_lines(axes: Axes, raster: Array, frame: Frame, scale: Scale) -> None:
     """Lines of equal value at the ticks, broken at interfaces where the value jumps."""
     rows, columns = raster.shape
-    x = LEFT + WIDTH * (np.arange(columns) + 0.5) / columns
-    z = TOP + frame.height * (np.arange(rows) + 0.5) / rows
+    x = frame.half * (2 * (np.arange(columns) + 0.5) / columns - 1)
+    z = (np.arange(rows) + 0.5) / rows
+    levels = [value for value, _ in scale.ticks]
     bounds = [round(rows * share) for share in frame.shares]
-    path = []
     for low, high in itertools.pairwise(bounds):
-        if high - low < 3 or not np.isfinite(raster[low:high]).all():
-            continue
-        lines = contourpy.contour_generator(x, z[low:high], raster[low:high])
-        for value, _ in scale.ticks:
-            path += [polyline(np.asarray(line)) for line in lines.lines(value)]
-    return f'<path d="{"".join(path)}" class="level"/>'
-
-
-def _bar(frame: Frame, scale: Scale) -> str:
-    """The colours of the scale with its ticks, to the right of the raster."""
-    left, width = LEFT + WIDTH + 8, 10.0
-    parts = [_image(_address(_palette(scale)[::-1, None, :]), left, width, frame)]
-    for value, text in scale.ticks:
-        share = (value - scale.low) / (scale.high - scale.low or 1.0)
-        if -1e-9 <= share <= 1 + 1e-9:
-            at = TOP + (1 - share) * frame.height
-            parts.append(
-                f'<path d="M{left + width} {at:.1f}h3" class="s-muted"/>'
-                f'<text x="{left + width + 5}" y="{at + 3.5:.1f}" class="f-ink">{drawn(text)}</text>'
-            )
-    return "".join(parts)
+        part = raster[low:high]
+        if high - low >= 3 and np.isfinite(part).all() and any(part.min() < v < part.max() for v in levels):
+            axes.contour(x, z[low:high], part, levels, **LEVEL)
 
 
 SHOWN = ("von_mises", "sigma_xx", "sigma_xz")
@@ -238,7 +221,7 @@ LOWEST, HIGHEST = -8.0, -3.0  # exponents of the difference over p_h; the same i
 EVERY = 3  # of the columns in the table of numbers
 
 
-def pictures(plane: Plane | None, a_h: float, p_h: float) -> dict[str, Any] | None:
+def pictures(plane: Plane | None, a_h: float, p_h: float, case: str = "") -> dict[str, Any] | None:
     """Von Mises stress, sigma_xx and sigma_xz side by side, below them the differences of both methods.
 
     With caption and the numbers as CSV; None where there is nothing to draw.
@@ -263,14 +246,15 @@ def pictures(plane: Plane | None, a_h: float, p_h: float) -> dict[str, Any] | No
         values = np.concatenate([f.ravel() for f in shown])
         known = values[np.isfinite(values)]
         span = f"{plain(known.min(), 3)} to {plain(known.max(), 3)}" if known.size else "not finite"
-        fields.append(panel(shown, _colours(quantity, shown), title, f"{title} by {name}", f"{name}, {span}"))
+        label = f"{title} by {name}, {case}"
+        fields.append(panel(shown, _colours(quantity, shown), title, label, f"{name}, {span}"))
         if len(sources) == 2:
             apart = [np.abs(one - other) for one, other in zip(*by.values(), strict=True)]
             largest = max(float(g.max()) for g in apart)
             exponents = [np.log10(np.maximum(g, 10.0 ** (LOWEST - 1))) for g in apart]
             top = max(HIGHEST, float(np.ceil(np.log10(largest)))) if 0 < largest < np.inf else HIGHEST
             colours = Scale(LOWEST, top, "cividis", logarithmic=True)
-            label = f"difference of both methods in {title}, logarithmic"
+            label = f"difference of both methods in {title}, logarithmic, {case}"
             note = f"largest {scientific(largest)}"
             gaps.append(panel(exponents, colours, f"difference in {title}", label, note))
     return {

@@ -8,10 +8,9 @@ from markupsafe import Markup, escape
 from verification.judging.verdict import Outcome
 from verification.page.number_text import scientific
 from verification.page.page_parts import Panel
+from verification.page.plots import Curve, Difference, draw_curves
 from verification.page.source_labels import pair_label, pair_style, source_label, source_style, symbol_of
-from verification.page.svg_curves import Curve, Difference, draw
-from verification.page.svg_plot import MARKS
-from verification.problem.line_profile import ON_BALL, coordinate_of
+from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import QUANTITIES
 from verification.report.report_words import stated
 from verification.report.tables.case_lookup import (
@@ -26,7 +25,7 @@ from verification.sources.source_record import Style
 from verification.sources.source_registry import METHODS
 
 MOST_FAILING = 6  # panels of comparisons that do not agree, besides the chosen ones
-MOST = 9
+MOST = 9  # fewer where all agree: any other is drawn on the page itself, from its numbers
 # What is looked at first, on the flat.
 FIRST = (
     ("pressure", "surface"),
@@ -36,7 +35,13 @@ FIRST = (
     ("sigma_xx", "interface 1, lower side"),
     ("sigma_xz", "interface 1, upper side"),
 )
-CHOSEN = (*FIRST, ("sigma_zz", "axis"), ("sigma_xx", f"{ON_BALL}surface"), ("u_z", "oblique surface"))
+# Marks of single points, open, in units of the drawing; by the shapes of ``Style.marker``.
+MARKS = {
+    "o": "m-2.6 0a2.6 2.6 0 1 0 5.2 0a2.6 2.6 0 1 0-5.2 0z",
+    "^": "m0-3.1l3 5.2h-6z",
+    "s": "m-2.4-2.4h4.8v4.8h-4.8z",
+    "+": "m-3 0h6m-3-3v6",
+}
 
 
 def case_figures(result: CaseResult) -> dict[str, Any] | None:
@@ -47,7 +52,7 @@ def case_figures(result: CaseResult) -> dict[str, Any] | None:
     drawable = {(p.quantity, p.line) for p in result.profiles if p.line != "contact"}
     bad = dict.fromkeys((c.quantity, c.line) for c, v in result.verdicts if v.outcome is not Outcome.AGREES)
     failing = [place for place in bad if place in drawable][:MOST_FAILING]
-    places = list(dict.fromkeys([*failing, *(place for place in CHOSEN if place in drawable)]))[:MOST]
+    places = list(dict.fromkeys([*failing, *(place for place in FIRST if place in drawable)]))[:MOST]
     places = places[: len(places) // 3 * 3] if len(places) > 3 else places  # whole rows of three
     if not places:
         return None
@@ -108,10 +113,10 @@ def _panel(result: CaseResult, line: str, quantity: str) -> Panel:
         differences.append(Difference(first.position / a_h, gap, uncertainty, pair_style(pair), worst, vague))
     cap = min((claim.cap for claim, _ in claims), default=None)
     edge = max((claim.edge for claim, _ in claims), default=0.0)
-    figure = draw(
+    figure = draw_curves(
         curves,
         differences,
-        label=f"{symbol_of(quantity)} on {line} by every source, with differences",
+        label=f"{symbol_of(quantity)} on {line} by every source, with differences, {result.name}",
         coordinate=f"{coordinate_of(line)} / a_h",
         cap=cap,
         unjudged=_unjudged(edge, contact_radius(result), a_h, curves),

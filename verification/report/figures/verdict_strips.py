@@ -9,12 +9,10 @@ from dataclasses import dataclass
 from math import ceil, floor, isfinite, log10
 from typing import Any
 
-import numpy as np
 from markupsafe import Markup, escape
 
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.source_labels import OUTCOMES
-from verification.page.svg_plot import polyline
 from verification.page.symbol_text import drawn, unicode
 
 WIDTH, HEIGHT = 560.0, 22.0
@@ -151,8 +149,8 @@ def _bars(lanes: Sequence[Item], lane: float, axis: Axis) -> str:
         corners += [(x, INSET + lane * n), (x, INSET + lane * (n + 1))]
     if not corners:
         return ""
-    outline = np.array([(0.0, INSET), *corners, (0.0, HEIGHT - INSET)])
-    return f'<path d="{polyline(outline)}z" class="bars"/>'
+    outline = "L".join(f"{x:.1f} {y:.2f}" for x, y in corners)
+    return f'<path d="M0 {INSET:g}L{outline}L0 {HEIGHT - INSET:g}z" class="bars"/>'
 
 
 def _caps(lanes: Sequence[Item], lane: float, axis: Axis) -> str:

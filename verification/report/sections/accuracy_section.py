@@ -60,18 +60,14 @@ class Accuracy:
         return "agrees" if self.ratio >= 1 else "inconclusive"
 
 
-def section(
-    results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], coverage: Table
-) -> Section | None:
-    """``coverage``, as ``coverage_table``, then the errors of each method; None where none is known."""
-    if not coverage:
-        return None
+def section(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str]) -> Section | None:
+    """The errors of each method against the exact reference; None where none is known."""
     parts = [
         Part("", [overview], folded=f"Errors of {source_label(source)}, case by case")
         for source in METHODS
         if (overview := _overview(results, anchors, source))
     ]
-    return Section("accuracy", "Accuracy against the exact reference", [Part("", [coverage]), *parts])
+    return Section("accuracy", "Accuracy against the exact reference", parts) if parts else None
 
 
 @lru_cache(maxsize=256)

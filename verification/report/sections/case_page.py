@@ -61,7 +61,7 @@ def contents(material: Material, result: CaseResult, anchor: str) -> dict[str, A
         "contact": contact_tables(result),
         "strips": case_strips(items_of(verdicts), anchor),
         "sketch": sketch(problem, radius),
-        "pictures": pictures(material.planes.get(result.name), a_h, p_h),
+        "pictures": pictures(material.planes.get(result.name), a_h, p_h, result.name),
         "figures": case_figures(result),
         "beyond": material.evidence.beyond.get(result.name, ()),
         "maps": material.evidence.maps is not None,

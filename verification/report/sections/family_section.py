@@ -10,10 +10,10 @@ from itertools import zip_longest
 import numpy as np
 from markupsafe import Markup
 
+from verification.page.figures import HUGE, Sheet, line, round_ticks
 from verification.page.number_text import plain
 from verification.page.page_parts import Cell, Gallery, Panel, Part, Section, Table, number, row, written
 from verification.page.source_labels import source_label
-from verification.page.svg_plot import HUGE, Axes, drawing, round_ticks
 from verification.problem.array_types import Array
 from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import QUANTITIES, SCALARS
@@ -82,19 +82,19 @@ def _families(results: Sequence[CaseResult]) -> dict[tuple[float, float, float],
 def _gallery(members: Members) -> Gallery:
     styles = {ratio: Style("ink", DASHED[n % len(DASHED)], 1.3) for n, ratio in enumerate(members)}
     panels, columns = [], []
-    for quantity, line in FIRST:
+    for quantity, place in FIRST:
         curves: Curves = {}
         for ratio, result in members.items():
-            profile = result.profile_of.get((quantity, line, reference_source(result) or ""))
+            profile = result.profile_of.get((quantity, place, reference_source(result) or ""))
             if profile is not None:
                 a_h, p_h = (scale(result.problem, name) for name in ("a_h", "p_h"))
                 x, y = curves[ratio] = profile.position / a_h, profile.value / p_h
-                what = f"E1/E2 = {plain(ratio, 3)}, {line}"
-                columns.append([f"{coordinate_of(line)} / a_h, {what}", *(f"{v:.6g}" for v in x)])
+                what = f"E1/E2 = {plain(ratio, 3)}, {place}"
+                columns.append([f"{coordinate_of(place)} / a_h, {what}", *(f"{v:.6g}" for v in x)])
                 columns.append([f"{quantity} / p_h, {what}", *(f"{v:.6g}" for v in y)])
         if curves:
-            figure = _draw(curves, styles, quantity, line)
-            panels.append(Panel(f"{QUANTITIES[quantity].symbol} / p_h", figure, f"on {line}"))
+            figure = _draw(curves, styles, quantity, place)
+            panels.append(Panel(f"{QUANTITIES[quantity].symbol} / p_h", figure, f"on {place}"))
     legend = [(swatch(style), f"E1/E2 = {plain(ratio, 3)}") for ratio, style in styles.items()]
     caption = "The best reference of each case; the methods coincide with it, see the pages of the cases."
     return Gallery(legend, panels, caption, written(list(zip_longest(*columns, fillvalue=""))))
@@ -120,14 +120,15 @@ def _numbers(members: Members) -> Table:
     )
 
 
-def _draw(curves: Curves, styles: dict[float, Style], quantity: str, line: str) -> Markup:
+def _draw(curves: Curves, styles: dict[float, Style], quantity: str, place: str) -> Markup:
     (left, right), (low, high) = (_ends([pair[i] for pair in curves.values()]) for i in (0, 1))
     margin = 0.09 * (high - low)
-    axes = Axes(BOX, (left, right), (low - margin, high + margin))
-    axes.ticks(round_ticks(left, right, 6), round_ticks(low, high, 6), f"{coordinate_of(line)} / a_h")
+    figure = Sheet(WIDTH, HEIGHT)
+    chart = figure.chart(BOX, (left, right), (low - margin, high + margin))
+    chart.ticks(round_ticks(left, right, 6), round_ticks(low, high, 6), f"{coordinate_of(place)} / a_h")
     for ratio, (x, y) in curves.items():
-        axes.line(x, y, styles[ratio])
-    return drawing(WIDTH, HEIGHT, f"{quantity} on {line} for every E1/E2", axes)
+        line(chart.axes, x, y, styles[ratio])
+    return figure.drawing(f"{quantity} on {place} for every E1/E2")
 
 
 def _ends(arrays: Sequence[Array]) -> tuple[float, float]:

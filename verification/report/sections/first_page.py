@@ -1,4 +1,4 @@
-"""First page of a report: problem, sources, outcome, its credibility, limits of the claim."""
+"""First page of a report: what agrees, what that is worth, what is left out, what is not verified."""
 
 from collections import Counter
 from collections.abc import Sequence
@@ -7,32 +7,31 @@ from math import isfinite
 from statistics import median
 from typing import Any
 
-from verification.credibility.faults.first_notice import (
-    COUNTED,
-    Noticed,
-    kinds,
-    method_score,
-    noticed,
-    of_method,
-)
-from verification.judging.verdict import Claim, Outcome
+from scipy.special import betaincinv
+
+from verification.cases.random_problems import MOST_COATINGS
+from verification.credibility.faults.first_notice import COUNTED, Noticed, noticed
+from verification.credibility.import_independence import shared_functions
+from verification.credibility.model_error import ASSUMPTIONS
+from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.number_text import plain, scientific
 from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of
 from verification.problem.coated_contact import BALL
 from verification.problem.line_profile import EDGE_LINE
-from verification.problem.quantity import QUANTITIES
+from verification.problem.quantity import QUANTITIES, SCALARS, SLOPES
 from verification.regression.baseline_change import State, baseline_message
 from verification.regression.manifest import manifest_message
 from verification.report.figures.field_pictures import plane_difference
 from verification.report.figures.verdict_strips import Axis, axis_of, draw_axis, draw_strip, items_of, worst
-from verification.report.report_material import Material, made_with
+from verification.report.report_material import Material
 from verification.report.sections.accuracy_section import accuracies
 from verification.report.tables.case_lookup import divisor, layers
 from verification.running.case_result import CaseResult
 from verification.running.published_counts import counts
 from verification.sampling.line_sampling import CLEAR
 from verification.sources.source_record import Independence
-from verification.sources.source_registry import CLOSED, SOURCES, independence
+from verification.sources.source_registry import CLOSED, METHODS, SOURCES, independence
+from verification.validation import validation_page
 
 MOST_ROWS = 20  # strips of the first page; of more cases the worst have their own, the others share some
 OWN_ROWS = 6  # with them the page of the shipped cases has less than 600 words
@@ -64,9 +63,14 @@ def contents(material: Material) -> dict[str, Any]:
         "tallies": _tallies(material),
         "alarms": _alarms(material),
         "answered": _answered(material),
+        "agreements": agreements(material),
+        "shared": shared(material),
+        "imports": bool(material.evidence.parts),
         "chart": chart(material),
         "worth": worth(material),
-        "left_out": _left_out(material),
+        "model": model_costs(material),
+        "left_out": left_out(material.results),
+        "unverified": _unverified(material),
         "shaped": any(result.problem.get("indenter") for result in material.contacts),
     }
 
@@ -135,13 +139,13 @@ def _largest(material: Material) -> list[str]:
     return texts
 
 
-def _left_out(material: Material) -> tuple[float, int]:
+def left_out(results: Sequence[CaseResult]) -> tuple[float, int]:
     """The widest zone at the edge that is not judged [% of a], the number of comparisons with one."""
     zones = [
         CLEAR
         if result.problem.get("indenter") and claim.line.startswith(("off plane", "oblique", "interface"))
         else claim.edge
-        for result in material.results
+        for result in results
         for claim, _ in result.verdicts
     ]
     return 100 * max(zones, default=0.0), sum(zone > 0 for zone in zones)
@@ -228,76 +232,179 @@ def _tallies(material: Material) -> list[tuple[OutcomeStyle, int]]:
     return [(OUTCOMES[o], counted[o]) for o in reversed(OUTCOMES) if counted[o] or o is Outcome.AGREES]
 
 
+def repeated(material: Material) -> set[tuple[str, int]]:
+    """The comparisons (case, number) that repeat those of another case: friction leaves the contact as it is.
+
+    They compare the same numbers of a contact, or the pressure, of the same sources with the same result.
+    """
+    seen: set[tuple[Any, ...]] = set()
+    again = set()
+    for result in material.contacts:
+        solved = {k: v for k, v in result.problem.items() if k != "friction"}
+        for number, (claim, _) in enumerate(result.verdicts):
+            if claim.quantity not in (*SCALARS, *SLOPES, "pressure"):
+                continue
+            found = (result.profile_of.get(("contact_radius", "contact", one)) for one in claim.between)
+            radii = [f"{one.value[0]:.10g}" for one in found if one is not None]
+            key = (str(solved), claim.quantity, claim.line, claim.between, *radii)
+            if key in seen:
+                again.add((result.name, number))
+            seen.add(key)
+    return again
+
+
+def agreements(material: Material) -> list[Worth]:
+    """What agrees, between whom, how well; comparisons that repeat another case's are not counted again."""
+    again = repeated(material)
+    found: dict[Independence, list[Verdict]] = {}
+    for result in material.results:
+        shaped = result.problem.get("indenter") is not None
+        for number, (claim, verdict) in enumerate(result.verdicts):
+            if (result.name, number) not in again:
+                found.setdefault(independence(claim.between, shaped=shaped), []).append(verdict)
+    rows = []
+    for kind in (kind for kind in Independence if kind in found):
+        held = [one.outcome is Outcome.AGREES for one in found[kind]]
+        gaps = [one.difference for one in found[kind] if one.difference is not None]
+        note = f"largest difference {scientific(max(gaps))}" if gaps else ""
+        rows.append(Worth(f"{kind}", _share(held), "#cases", all(held), note))
+    if again:
+        text = "friction leaves the contact as it is"
+        rows.append(Worth("not counted again", str(len(again)), "#cases", None, text))
+    return rows
+
+
+def shared(material: Material) -> list[tuple[str, str]]:
+    """What both methods have in common, part by part, from the imports and the registry of sources."""
+    parts = material.evidence.parts
+    if not parts:
+        return [("code", "not measured: the source of the packages could not be read")]
+    first, second = parts[:2]
+    forbidden = [text for part in parts for text in (*part.forbidden, *part.hidden)]
+    counted = sum(part.statements for part in parts)
+    common = shared_functions(first, second)
+    special = [name for name in common if name.startswith("scipy.special")]
+    nodes = [name for name in common if "gauss" in name or "roots_" in name]
+    packages = ", ".join(sorted(set(first.packages) & set(second.packages)))
+    equations = {SOURCES[name].equation for name in METHODS}
+    one_equation = len(equations) == 1 and equations != {""}
+    with_method = [one.label for one in SOURCES.values() if one.equation and one.name not in METHODS]
+    starts = any(result.problem.get("indenter") for result in material.contacts)
+    return [
+        ("code", "; ".join(forbidden[:3]) or f"none, by {counted} imports; both use {packages}"),
+        (
+            "equation",
+            ", ".join(sorted(equations))
+            if one_equation
+            else f"none; the {', '.join(with_method)} has that of the semi-analytical method, coded twice",
+        ),
+        ("special functions", ", ".join(special) or "none"),
+        ("quadrature nodes", ", ".join(nodes) or "none"),
+        (
+            "start values",
+            "where not round, the elements start from the patches' pressure" if starts else "none",
+        ),
+    ]
+
+
+def model_costs(material: Material) -> list[Worth]:
+    """The largest cost of each assumption among the cases of the run, as far as it is known."""
+    rows = []
+    titles = {result.name: result for result in material.contacts}
+    for title in (one.title for one in ASSUMPTIONS.values()):
+        found = [
+            (cost, titles[name])
+            for name, model in material.evidence.models.items()
+            if name in titles and (cost := model.largest(assumption=title))
+        ]
+        if found:
+            cost, result = max(found, key=lambda one: one[0].size)
+            words = f"{cost.percent} of the {cost.name}"
+            rows.append(Worth(title, words, f"#{material.anchors[result]}", None, result.title))
+    return rows
+
+
+def _unverified(material: Material) -> list[str]:
+    """What no comparison of the run reaches, a line each."""
+    most = max((len(layers(result.problem)) - 1 for result in material.contacts), default=0)
+    texts = [
+        f"More than {max(most, MOST_COATINGS)} coatings, and what lies outside the ranges of the problems "
+        "solved.",
+        "Residual stress, temperature, graded coatings, strengths and critical loads: coatcheck solve and "
+        "study add them to the stresses, without a second method.",
+        "Stress, friction and shape of the contact in an experiment."
+        if validation_page.shipped()
+        else "Any experiment.",
+    ]
+    share, count = left_out(material.results)
+    if count:
+        texts.append(f"Points within {share:.0f} % of the contact edge, in {count} comparisons.")
+    return texts
+
+
 def worth(material: Material) -> list[Worth]:
     """What is known about the verdicts besides the comparisons: each figure with the page it is on."""
-    evidence, found = material.evidence, _independent(material)
+    evidence, found = material.evidence, list[Worth]()
 
     def share(name: str, held: Sequence[bool], href: str, note: str = "") -> None:
         if held:
             found.append(Worth(name, _share(held), href, all(held), note))
 
-    def recorded(
-        name: str, value: str, href: str, key: str, started: str, commit: str | None, also: str = ""
-    ) -> None:
+    def recorded(name: str, value: str, href: str, record: Any, also: str = "") -> None:
+        key = href.removeprefix("#")
         older = key in evidence.older
-        note = f"{also}{started[:10]}, {(commit or 'no commit')[:8]}{', older than code' if older else ''}"
+        dated = f"{record.started[:10]}, {(record.commit or 'no commit')[:8]}"
+        note = f"{also}{dated}{', older than code' if older else ''}"
         found.append(Worth(name, value, href, None, note, older))
 
-    invariants = [one for result in material.results for one in result.invariants]
-    share("invariants hold", [one.outcome is Outcome.AGREES for one in invariants], "#invariants")
-    studies = evidence.accuracy.verdicts if evidence.accuracy is not None else ()
-    held = [one.outcome is Outcome.AGREES for one in studies]
-    share("judged studies agree", held, "#semi-analytical-accuracy")
     known = [item for result in material.contacts for item in accuracies(result)]
     ratios = [item.ratio for item in known if item.ratio is not None and isfinite(item.ratio)]
     note = f"median U / error {plain(median(ratios), 2)}" if ratios else ""
     share("true error within U", [item.covered for item in known], "#accuracy", note)
+    if alarms := evidence.alarms:
+        wrong = {one.case for one in alarms.false_alarms}
+        bound = betaincinv(len(wrong) + 1, alarms.problems - len(wrong), 0.95) if alarms.problems else 1.0
+        value = f"{len(wrong)} of {alarms.problems}"
+        note = f"seed {alarms.seed}; below {plain(100 * bound, 2)} % at 95 %; "
+        recorded("random problems with a false alarm", value, "#alarms", alarms, note)
+    if faults := evidence.faults:
+        for name in METHODS:
+            rows = [row for row in faults.rows if row.where == name]
+            real = [row for row in rows if noticed(row) not in (Noticed.EQUIVALENT, Noticed.NOT_TRIED)]
+            if real:
+                seen = sum(noticed(row) in COUNTED for row in real)
+                label = f"faults planted in the {SOURCES[name].label} method noticed"
+                label = label.replace("finite elements method", "finite elements")
+                recorded(label, f"{seen} of {len(real)}", "#faults", faults)
+        if faults.alarms:
+            silent = [row not in faults.alarms for row in faults.controls]
+            share("runs without a fault left alone", silent, "#faults")
+    if measured := validation_page.shipped():
+        compared = [one for one in measured.sets if not one.measured.reason]
+        if compared:
+            mean = max((one.mean for one in compared), key=abs)
+            value = f"{100 * mean:+.1f} %".replace("-", "−")
+            note = f"u_val {plain(100 * float(compared[0].u_val.mean()), 2)} %; compliance alone"
+            found.append(Worth("computed less measured modulus", value, "#validation", None, note))
+    invariants = [one for result in material.results for one in result.invariants]
+    share(
+        "laws that every solution obeys", [one.outcome is Outcome.AGREES for one in invariants], "#invariants"
+    )
+    studies = evidence.accuracy.verdicts if evidence.accuracy is not None else ()
+    held = [one.outcome is Outcome.AGREES for one in studies]
+    share("parts of the method within limits", held, "#semi-analytical-accuracy")
     if material.published:
         count = str(counts(material.published)[0])
         found.append(Worth("published values counted", count, "#published", None))
-    if faults := evidence.faults:
-        value = f"{faults.caught} of {len(faults.tried)}"
-        recorded("planted faults detected", value, "#faults", "faults", faults.started, faults.commit)
-        if of_method(faults):
-            seen, total = method_score(faults)
-            apart = (*COUNTED, Noticed.EQUIVALENT, Noticed.NOT_TRIED)
-            left = ", ".join(row.name for row in of_method(faults) if noticed(row) not in apart)
-            note = "; ".join(filter(None, (kinds(faults), left and f"by none of these: {left}")))
-            found.append(Worth("of these, semi-analytical", f"{seen} of {total}", "#faults", None, note))
-        if faults.alarms:
-            silent = [row not in faults.alarms for row in faults.controls]
-            share("negative controls left alone", silent, "#faults")
-    if alarms := evidence.alarms:
-        value = f"{len(alarms.false_alarms)} of {alarms.comparisons + alarms.invariants}"
-        vague = f"{len(alarms.inconclusive)} inconclusive, " if alarms.inconclusive else ""
-        recorded("false alarms", value, "#credibility", "alarms", alarms.started, alarms.commit, vague)
-    if evidence.maps is not None and evidence.maps.maps:
-        count = str(len(evidence.maps.maps))
-        recorded("assumptions mapped", count, "#model", "maps", *made_with(evidence.maps))
     regression = evidence.baseline
     if regression is not None and regression.update is not None:
         same = sum(case.count(State.SAME) for case in regression.cases)
         total = sum(case.count(state) for case in regression.cases for state in State)
         good = False if regression.unexplained else True if same == total else None
         value = f"all {total}" if same == total else f"{same} of {total}"
-        found.append(Worth("numbers of the baseline", value, "#baseline", good))
+        found.append(Worth("numbers as in the baseline", value, "#baseline", good))
     share("self-tests passed", [test.passed for test in evidence.self_tests], "#self-tests")
     return found
-
-
-def _independent(material: Material) -> list[Worth]:
-    """Comparisons that agree, by what their two sources have in common."""
-    agreed: dict[Independence, list[bool]] = {}
-    for result in material.results:
-        shaped = result.problem.get("indenter") is not None
-        for claim, verdict in result.verdicts:
-            kind = independence(claim.between, shaped=shaped)
-            agreed.setdefault(kind, []).append(verdict.outcome is Outcome.AGREES)
-    return [
-        Worth(f"{kind}", _share(agreed[kind]), "#cases", all(agreed[kind]))
-        for kind in Independence
-        if kind in agreed
-    ]
 
 
 def _share(held: Sequence[bool]) -> str:

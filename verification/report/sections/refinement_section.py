@@ -9,8 +9,8 @@ from verification.judging.invariants.influence_error import ConversionError
 from verification.judging.outcome import Outcome
 from verification.page.number_text import seconds
 from verification.page.page_parts import Cell, Gallery, Part, Section, Table, number, row, table_of
+from verification.page.plots import DASHES, DOTS, MIXED, UNKNOWN, Plot, Trail, panels
 from verification.page.source_labels import OUTCOMES, row_css
-from verification.page.svg_loglog import DASHES, DOTS, MIXED, UNKNOWN, Plot, Trail, panels
 from verification.report.figures.line_panels import swatch
 from verification.report.report_words import stated
 from verification.sources.source_record import Style

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from verification.page.page_parts import Cell, Part, Section, number, table_of
 from verification.study.choice.critical_load import Critical, critical, ramps
@@ -23,6 +23,8 @@ from verification.study.pages.study_figures import (
 from verification.study.pages.thickness_page import rounded
 from verification.study.study_plan import Study
 from verification.study.study_table import read_columns
+
+WIDE = 8.0  # last load over the first, from which the ramp is drawn on a logarithmic axis
 
 
 def write_load_report(
@@ -166,7 +168,7 @@ def _maps(study: Study, found: Sequence[Critical]) -> list[Drawn]:
                     for x, values in zip(h, band, strict=True)
                 ]
                 shown = np.where(np.isfinite(band), band, 10 * high)
-                axes.fill_between(h, shown[:, 0], shown[:, 2], color=pale(colour), linewidth=0, alpha=0.6)
+                axes.fill_between(h, shown[:, 0], shown[:, 2], color=colour, linewidth=0, alpha=0.27)
                 axes.plot(h, shown[:, 1], color=colour, label=mode, marker=".", markersize=3)
             first = np.array([one.first[1] for one in members])
             axes.plot(h, np.where(np.isfinite(first), first, 10 * high), color="black", linewidth=0.9,
@@ -225,6 +227,12 @@ def _tracks(study: Study, found: Sequence[Critical]) -> list[Drawn]:
             lower.set_xlim(one.load[0], one.load[-1])
             top = upper.secondary_xaxis("top", functions=_pressure(ramp.load, ramp.p0 / units.pascal))
             top.xaxis.set_major_locator(MaxNLocator(5))
+            if one.load[-1] > WIDE * one.load[0]:
+                lower.set_xscale("log")
+                for axis in (lower.xaxis, top.xaxis):
+                    axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+                    axis.set_major_formatter(lambda value, _: f"{value:g}")
+                    axis.set_minor_formatter(NullFormatter())
             top.set_xlabel(f"peak pressure $p_0$ [{units.stress}]")
             below(figure, upper.get_legend_handles_labels()[0], 2)
             rows += [

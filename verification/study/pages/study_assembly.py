@@ -1,6 +1,5 @@
 """What the reports of all studies share: figures as files, common sections, the page as a file."""
 
-import base64
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +8,7 @@ from typing import Any
 from markupsafe import Markup
 from numpy.typing import NDArray
 
+from verification.page.figures import inline
 from verification.page.html_page import render_sections
 from verification.page.page_parts import (
     Cell,
@@ -172,10 +172,12 @@ def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Sectio
         Panel(
             d.title,
             Markup(
-                '<img class="print" src="data:image/svg+xml;base64,{}" alt="{}" loading="lazy">'
-                '<a class="csv" href="{}" download="{}.csv.gz" data-csv="{}.csv">Numbers as CSV</a>'
+                '{}<a class="csv" href="{}" download="{}.csv.gz" data-csv="{}.csv">Numbers as CSV</a>'
             ).format(
-                base64.b64encode(d.svg).decode(), f"{d.title}. {d.caption}", embedded(d.csv), d.name, d.name
+                inline(d.svg.decode(), f"{d.name}: {d.title}. {d.caption}", css="print"),
+                embedded(d.csv),
+                d.name,
+                d.name,
             ),
             d.caption,
             "",

@@ -390,10 +390,9 @@ def _places(lines: QuadContourSet, h: Array, ratio: Array) -> list[tuple[float, 
     return found
 
 
-def pale(colour: str) -> tuple[float, float, float]:
-    """A ``colour`` for areas: nearer to white."""
-    r, g, b = mpl.colors.to_rgb(colour)
-    return (0.45 * r + 0.55, 0.45 * g + 0.55, 0.45 * b + 0.55)
+def pale(colour: str) -> tuple[float, float, float, float]:
+    """A ``colour`` for areas, through which the page shows, light or dark."""
+    return mpl.colors.to_rgba(colour, 0.45)
 
 
 def _map(choices: Sequence[Choice]) -> tuple[Array, Array, Array]:
