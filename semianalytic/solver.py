@@ -96,6 +96,8 @@ def solve(
     if edge_correction:
         check_odd(patches)
     if indenter is not None:
+        if gap != "parabola":
+            raise ValueError(f"gap = {gap!r} is of a sphere, and indenter = {indenter!r}; give one")
         pressed = _of_profile(profile_of(indenter, radius), load, approach, edge_correction)
         half_width = FILL * WIDER_SHAPE * hertz_radius(radius, load, approach, body)
         numerics = replace(numerics, tolerance=max(tolerance, 1e-8))

@@ -31,13 +31,7 @@ CLAIM = {
     "edge": 0.05,
 }
 KNOBS = {
-    "semianalytic": {
-        "patches": 129,
-        "conversion": "split",
-        "max_iterations": 300,
-        "edge_correction": True,
-        "approach": 1e-6,
-    },
+    "semianalytic": {"patches": 129, "conversion": "split", "max_iterations": 300, "edge_correction": True},
     "fem_reference": {"order": 3, "quality": "fast"},
 }
 CASES = [tomllib.loads(path.read_text(encoding="utf-8")) for path in shipped_cases().values()]

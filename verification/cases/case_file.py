@@ -35,12 +35,14 @@ from verification.cases.unit_numbers import InSI, Metres, Newtons
 from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.coated_contact import BALL, FLAT, CoatedContact
+from verification.problem.display_units import Units
 from verification.problem.indenter_shape import Indenter
 from verification.problem.line_profile import Line, line_of, lines_of, oblique_lines
+from verification.sources.load_of_approach import load_of_approach, own_radius
 from verification.sources.source_registry import METHODS, sources_of
 
-CONTRAST = 1e4  # of moduli, beyond which a method loses digits, and a ball deforms by less than 1e-4
-SUPPORTED = (1e-3, 1e3)  # h / a_h, by both methods
+CONTRAST = 1e4  # of moduli over those below, where digits are lost; a ball deforms 1e-4 by it
+SUPPORTED = (1e-3, 1e3)  # thickness over contact radius, by both methods
 CASES = Path(__file__).parent / "shipped" / "contact"
 SHAPES = Path(__file__).parent / "shipped" / "shapes"
 
@@ -56,6 +58,7 @@ class Case:
     courses : E of each coating by body as it was given, "" where it is not graded; likewise {}.
     remarks : on numbers that are likely but may be meant otherwise, a line each.
     names : those of the coatings of each body, then that of the body itself; "" where none is given.
+    approach : that states the problem [m], whose load was found; None where the load is given.
     resolve : whether it is also solved scaled, with equal moduli, thick and thin (``invariants.resolved``).
     """
 
@@ -74,6 +77,12 @@ class Case:
     names: dict[str, tuple[str, ...]] = field(default_factory=dict)
     courses: dict[str, tuple[str, ...]] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
+    approach: float | None = None
+
+    def keywords(self, source: str) -> dict[str, Any]:
+        """Those of ``source`` besides the problem; the semi-analytical method presses by a given approach."""
+        stated = {} if self.approach is None or source != METHODS[0] else {"approach": self.approach}
+        return self.numerics.get(source, {}) | stated
 
     @property
     def lines(self) -> tuple[Line, ...]:
@@ -132,13 +141,33 @@ class Sized(Strict):
 
 
 class _Problem(Sized):
-    load: Newtons
+    load: Newtons | None = None
+    approach: Metres | None = None
     indenter: IndenterEntry | None = None
     friction: Friction = 0.0
     substrate: Material
     coatings: Annotated[list[WholeCoating], Field(default_factory=list, max_length=50)]
     ball: BallEntry | None = None
     temperature_change: TemperatureChange | None = None
+
+    @model_validator(mode="after")
+    def _one_statement(self) -> "_Problem":
+        given = [f"{name} = {value:g}" for name in ("load", "approach") if (value := getattr(self, name))]
+        if len(given) != 1:
+            found = f"{' and '.join(given)} are both given" if given else "neither of them is given"
+            raise ValueError(f"needs exactly one of load [N] or approach [m]; {found}")
+        if self.approach is not None and self.indenter is not None:
+            raise ValueError("approach states the contact of a ball alone; give the load of this indenter")
+        if self.approach is not None and self.approach > self.size:
+            ball = f"the radius of the ball, {self.size:g} m"
+            raise ValueError(f"approach = {self.approach:g} m is beyond {ball}; check its unit")
+        coatings = [*self.coatings, *(self.ball.coatings if self.ball else ())]
+        if self.temperature_change is not None and all(c.expansion is None for c in coatings):
+            raise ValueError(
+                "temperature_change acts on no coating: give the expansion of each whose residual "
+                "stress it makes, or leave it out"
+            )
+        return self
 
     def graded(self) -> dict[str, list[WholeCoating]]:
         """The coatings by body; {} where none of them is graded."""
@@ -166,15 +195,22 @@ class _Problem(Sized):
         return found if any(any(stresses) for stresses in found.values()) else {}
 
     def contact(self, over: int = 1) -> CoatedContact:
-        """The problem; a thickness over a_h is that over the scale of both bodies uncoated.
+        """The problem under its load, or under the load of its approach by the exact reference.
 
         over : divisor of the number of sub-layers.
         """
+        load = self.load
+        if load is None:
+            load = load_of_approach(self.approach or 0.0, lambda W: _rigid(self._under(W, over))[0])
+        return self._under(load, over)
+
+    def _under(self, load: float, over: int) -> CoatedContact:
+        """The problem under a load; a thickness over a_h is that over the scale of both bodies uncoated."""
         ball, substrate = self.ball, (self.substrate.E, self.substrate.nu)
         indenter, size = (self.indenter.pair, self.indenter.radii) if self.indenter else (None, None)
         radius = float((size[0] * size[1]) ** 0.5) if size else self.size
         uncoated = ball.bare if ball else None
-        bare = CoatedContact(radius, self.load, (), substrate, self.friction, uncoated, indenter)
+        bare = CoatedContact(radius, load, (), substrate, self.friction, uncoated, indenter)
         given = ball.coated(bare.a_h, over) if ball else None
         return replace(bare, coatings=in_metres(self.coatings, bare.a_h, over), ball=given)
 
@@ -210,8 +246,14 @@ class _SemianalyticNumerics(Strict):
     patches: Annotated[int, Field(ge=33, le=4097), AfterValidator(_odd)] | None = None
     conversion: Literal["split", "plain"] | None = None
     edge_correction: bool | None = None
-    approach: Metres | None = None  # in place of the load
     max_iterations: Annotated[int, Field(ge=1, le=100_000)] | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _moved(cls, given: Any) -> Any:
+        if isinstance(given, dict) and "approach" in given:
+            raise ValueError("approach states the problem: give it in [problem], in place of the load")
+        return given
 
 
 class _FemNumerics(Strict):
@@ -244,7 +286,7 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
         problem, residual = checked.problem.contact(over), checked.problem.residual(over)
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: {error}") from None
-    refuse_unfit_scales(path, problem)
+    refuse_unfit_scales(path, problem, "load" if checked.problem.approach is None else "approach")
     problem, treated = _rigid(problem)
     if checked.resolve and not problem.coatings:
         raise CaseError(f"{path}: resolve: requires a coating; add one, or leave resolve out")
@@ -273,6 +315,7 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
         checked.problem.names(),
         {body: tuple(c.course for c in coatings) for body, coatings in graded.items()},
         diameter_remark(checked.problem.radius),
+        checked.problem.approach,
     )
 
 
@@ -286,32 +329,37 @@ def _rigid(problem: CoatedContact) -> tuple[CoatedContact, tuple[str, ...]]:
     return replace(problem, ball=None), (f"{told}; the ball is treated as rigid",)
 
 
-def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
-    """Raise CaseError beyond the range of the parabolic sphere, of a method or of floating point."""
-    a_h, R, slips = problem.a_h, problem.radius, likely_slips(problem)
-    if a_h > R:
-        reason = f"load: gives a contact radius of {a_h:.3g} m on a sphere of {R:.3g} m; lower the load"
-        raise CaseError(f"{path}: {reason}{slips}")
-    if not 1e-12 < a_h < 1e3:
-        reason = f"contact radius a_h = {a_h:.3g} m; check units of radius, load, E{slips}"
+def refuse_unfit_scales(path: Path, problem: CoatedContact, pressed: str = "load") -> None:
+    """Raise CaseError beyond the range of the parabolic sphere, of a method or of floating point.
+
+    Measured in the contact's own radius.   pressed : key that states the load.
+    """
+    R, slips = problem.radius, likely_slips(problem)
+    if not 1e-12 < problem.a_h < 1e3:
+        reason = f"contact radius a_h = {problem.a_h:.3g} m; check units of radius, load, E{slips}"
         raise CaseError(f"{path}: problem: {reason}")
+    a = own_radius(problem)
+    if a > R:
+        reason = f"gives a contact radius of {a:.3g} m on a sphere of {R:.3g} m; lower it"
+        raise CaseError(f"{path}: {pressed}: {reason}{slips}")
+    unit = Units.of_contact(problem, a)
     for body in problem.bodies:
         seen = problem.seen_from(body)
         for i, (_, _, h) in enumerate(seen.coatings):
             low, high = SUPPORTED
-            if not low <= h / a_h <= high:
+            if not low <= h / a <= high:
                 reason = (
-                    f"{h * 1e6:.3g} um is {h / a_h:.3g} times the contact radius; both methods support "
-                    f"{low:g} to {high:g}, {low * a_h * 1e6:.3g} um to {high * a_h * 1e6:.3g} um"
+                    f"{unit.shown_length(h)} is {h / a:.3g} times the contact radius; both methods support {low:g} "
+                    f"to {high:g}, {unit.shown_length(low * a, 3)} to {unit.shown_length(high * a, 3)}"
                 )
                 key = spoken(f"{before(body)}coatings.{i}.thickness")
                 raise CaseError(f"{path}: {key}: {reason}{slips}")
         moduli = [*(E for E, _, _ in seen.coatings), seen.substrate[0]]
-        contrast = max(moduli) / min(moduli)
+        contrast = max(E / min(moduli[i:]) for i, E in enumerate(moduli))
         if contrast > CONTRAST:
             reason = (
-                f"moduli differ {contrast:.3g} times; at most {CONTRAST:g} is supported, which is as good as "
-                "rigid; lower the largest or raise the smallest"
+                f"moduli: a layer is {contrast:.3g} times as stiff as one below it; at most {CONTRAST:g} is "
+                "supported; lower its modulus or raise the one below"
             )
             raise CaseError(f"{path}: {'ball' if body == BALL else 'problem'}: {reason}{slips}")
 

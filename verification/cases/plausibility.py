@@ -10,13 +10,16 @@ from collections.abc import Iterator, Mapping
 from verification.cases.toml_file import spoken
 from verification.cases.unit_numbers import InSI
 from verification.problem.coated_contact import BALL, CoatedContact
+from verification.problem.display_units import prefixed
+from verification.sources.load_of_approach import own_radius
 
 MODULI = (1e6, 2e12)  # Pa
+SMALL_BALL, SOFTEST = 1e-3, 10.0  # m, which indents gels and cells, down to this modulus [Pa]
 USUAL_MODULI = (1e9, 1.3e12)  # Pa, polymers to diamond
 USUAL_THICKNESSES = (1e-8, 2e-4)  # m
 LARGEST_RADIUS = 1.0  # m
-WIDEST = 0.1  # a_h / R
-THICKEST = 20.0  # h / a_h; beyond it the substrate has no part in the contact
+WIDEST = 0.1  # contact radius over that of the ball
+THICKEST = 20.0  # thickness over contact radius; beyond it the substrate has no part in the contact
 COATING = 1e-3  # m, thicker than coatings are
 BALLS = (1, 2, 3, 4, 5, 6, 6.35, 8, 9.525, 10, 12.7)  # mm, usual diameters in tribometers
 STRAIN = 0.05  # p_h / E*
@@ -24,6 +27,7 @@ THINNER = 0.2  # of the layer below it: an interlayer, that hardly lies at the s
 RESIDUAL = (1e6, 2e10)  # Pa, magnitude of a residual stress
 YIELD = 1.6  # p0 over the yield strength where yielding begins below the surface. Johnson (6.9)
 LIKELY = "looks like"
+BARE = 1e3  # Pa; a bare modulus below it is meant in GPa, whatever the ball
 _MODULUS_UNITS = {"GPa": 1e9, "MPa": 1e6, "kPa": 1e3}
 _LENGTH_UNITS = {"um": 1e-6, "mm": 1e-3, "nm": 1e-9}
 
@@ -115,27 +119,29 @@ def _numbers(problem: CoatedContact) -> Iterator[str]:
         moduli = {f"{of}coatings.{i}.E": E for i, (E, _, _) in enumerate(seen.coatings)}
         base = f"{of}E" if body == BALL else "substrate.E"
         for key, E in {base: seen.substrate[0], **moduli}.items():
+            low = MODULI[0] if problem.radius > SMALL_BALL else SOFTEST if isinstance(E, InSI) else BARE
             key = spoken(key)
-            if not MODULI[0] <= E <= MODULI[1]:
-                which = "below 1 MPa" if MODULI[0] > E else "above 2 TPa"
+            if not low <= E <= MODULI[1]:
+                which = f"below {prefixed(low, 'Pa')}" if low > E else "above 2 TPa"
                 yield f"{key} = {E:g} Pa is {which}" + _slip(key, E, _MODULUS_UNITS, USUAL_MODULI)
         for i, (_, _, h) in enumerate(seen.coatings):
             key = spoken(f"{of}coatings.{i}.thickness")
             slip = _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
-            if h > problem.radius:
+            if h > max(problem.radius, COATING):
                 yield f"{key} = {h:g} m is beyond the radius of the ball, {problem.radius:g} m" + slip
 
 
 def _thick(problem: CoatedContact) -> Iterator[str]:
     """Lines for coatings below which nothing takes part in the contact."""
-    a_h = problem.a_h or sys.float_info.min  # below which floating point has nothing
+    # before it is refused a contact may be of any size, and of none
+    a = own_radius(problem) if 0 < problem.a_h < float("inf") else sys.float_info.min
     for body in problem.bodies:
         for i, (_, _, h) in enumerate(problem.seen_from(body).coatings):
             key = spoken(f"{before(body)}coatings.{i}.thickness")
-            if h > problem.radius or h <= min(THICKEST * a_h, COATING):
+            if h > max(problem.radius, COATING) or h <= min(THICKEST * a, COATING):
                 continue
-            reason = f"is {h / a_h:.3g} contact radii; what lies below has no part"
-            if h <= THICKEST * a_h:
+            reason = f"is {h / a:.3g} contact radii; what lies below has no part"
+            if h <= THICKEST * a:
                 reason = f"is above {COATING:g} m, thick for a coating"
             yield f"{key} = {h:g} m {reason}" + _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
 
@@ -158,12 +164,12 @@ def _order(problem: CoatedContact) -> Iterator[str]:
 
 def _contact(problem: CoatedContact) -> Iterator[str]:
     """Lines for what the numbers make together."""
-    ratio, strain = problem.a_h / problem.radius, problem.p_h / problem.E_star
+    ratio, strain = own_radius(problem) / problem.radius, problem.p_h / problem.E_star
     if ratio > WIDEST:
         sphere = 1 - (1 - min(ratio, 1.0) ** 2) ** 0.5
         cost = 100 * (sphere / (ratio**2 / 2) - 1)
         yield (
-            f"contact radius a_h = {ratio:.2g} R is above {WIDEST:g} R: at the contact edge the sphere is "
+            f"contact radius a = {ratio:.2g} R is above {WIDEST:g} R: at the contact edge the sphere is "
             f"{cost:.2g} % higher than the parabola that is solved"
         )
     if strain > STRAIN:
@@ -177,7 +183,7 @@ def _slip(
     key: str, value: float, units: Mapping[str, float], usual: tuple[float, float], prefer: str = ""
 ) -> str:
     """ "; KEY = VALUE looks like UNIT" of a bare SI number; "; check its unit" of any other."""
-    if isinstance(value, InSI):
+    if isinstance(value, InSI) or usual[0] <= value <= usual[1]:
         return "; check its unit"
     for unit in sorted(units, key=lambda unit: unit != prefer):
         if usual[0] <= value * units[unit] <= usual[1]:

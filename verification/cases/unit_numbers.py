@@ -6,7 +6,6 @@ is the same number as 3e-6.
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from decimal import Decimal
 from functools import cache
 from typing import TYPE_CHECKING, Annotated, Any
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import BaseModel, Field, ValidationError, WrapValidator
 
 from verification.cases.toml_file import worded
+from verification.problem.display_units import Units
 
 if TYPE_CHECKING:
     from pint import UnitRegistry
@@ -64,24 +64,6 @@ class InSI(float):
         found = cls(value)
         found.unit = unit
         return found
-
-
-@dataclass(frozen=True)
-class Units:
-    """Units in which results are shown: names with the SI value of 1."""
-
-    length: str = "µm"
-    metre: float = 1e-6
-    stress: str = "MPa"
-    pascal: float = 1e6
-
-    def shown_stress(self, value: float) -> str:
-        """A given stress [Pa] with its unit."""
-        return f"{value / self.pascal:.4g} {self.stress}"
-
-    def shown_length(self, value: float) -> str:
-        """A given length [m] with its unit."""
-        return f"{value / self.metre:.4g} {self.length}"
 
 
 # Keys whose units are those of results. Moduli are in GPa in any file, without a wish for stresses in GPa.

@@ -1,4 +1,4 @@
-"""coatcheck solve: the answer to one problem in MPa with places in um."""
+"""coatcheck solve: the answer to one problem, in units of its size."""
 
 import math
 import time
@@ -35,7 +35,7 @@ from verification.desk.contact_answer import (
     usual_seconds,
     with_slicing,
 )
-from verification.desk.stack_text import body_label, conditions, described, outside_verified, stack
+from verification.desk.stack_text import body_label, conditions, described, outside_verified, stack, units_of
 from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import FLAT
 from verification.problem.quantity import QUANTITIES
@@ -57,6 +57,7 @@ def solve(
     *,
     ball: str | None = None,
     load: str | None = None,
+    approach: str | None = None,
     coating: Annotated[list[str] | None, Parameter(negative="")] = None,
     substrate: str | None = None,
     friction: float | None = None,
@@ -67,7 +68,7 @@ def solve(
     strict: Strict = False,
     as_json: AsJson = False,
 ) -> int:
-    """Solve one problem: size of the contact, largest stresses in MPa, their places in um.
+    """Solve one problem: size of the contact, largest stresses, their places.
 
     The semi-analytical method answers. The exit code is 1 where --check finds a difference beyond both
     uncertainties.
@@ -77,6 +78,7 @@ def solve(
         ball: "RADIUS" of a rigid ball, "RADIUS, E, NU" of an elastic one: "10 mm, 210 GPa, 0.3"; the size may
             also be "d = DIAMETER".
         load: "20 N"; bare numbers are SI here and in all other options.
+        approach: "0.5 um" in place of the load: of distant points of both bodies.
         coating: "THICKNESS, E, NU", such as "3 um, 450 GPa, 0.22"; once for each, from the surface down. A
             name may come first: "DLC 3 um, 450 GPa, 0.22".
         substrate: "E, NU", such as "210 GPa, 0.3" or "steel 210 GPa, 0.3".
@@ -87,7 +89,7 @@ def solve(
         force: Solve although a number looks like a slip of its unit.
     """
     begin = time.perf_counter()
-    given = (ball, load, coating, substrate, friction, ball_coating)
+    given = (ball, load, approach, coating, substrate, friction, ball_coating)
     case = _from_file(file, given) if file is not None else _from_options(*given)
     if plot is not None:
         require_format(plot)
@@ -131,10 +133,13 @@ def solve(
         from verification.desk.section_field import section
 
         title = f"{stack(case)}\n{conditions(case.problem)}"
-        write(stated, title, plot, section(case.problem, case.residual), case.names)
+        below = section(case.problem, case.residual)
+        write(stated, title, plot, below, case.names, units_of(case.problem))
     if as_json:
-        content = {  # in SI; NaN of a place that does not exist as text
+        content = {  # NaN of a place that does not exist as text
             "title": case.title,
+            "units": {"length": "m", "stress": "Pa", "force": "N"},
+            "given": "load" if case.approach is None else {"approach": case.approach},
             "source": case.source,
             "problem": describe(case.problem),
             "residual_stress": case.residual,
@@ -171,15 +176,17 @@ def _from_file(file: str, given: Sequence[Any]) -> Case:
 def _from_options(
     ball: str | None,
     load: str | None,
+    approach: str | None,
     coating: list[str] | None,
     substrate: str | None,
     friction: float | None,
     ball_coating: list[str] | None,
 ) -> Case:
-    if ball is None or load is None or substrate is None:
-        raise CommandError("give a case file, or --ball, --load and --substrate; see coatcheck solve --help")
+    if ball is None or substrate is None or (load is None and approach is None):
+        asked = "--ball, --load or --approach, and --substrate"
+        raise CommandError(f"give a case file, or {asked}; see coatcheck solve --help")
     try:
-        text = case_text(ball, load, substrate, coating or [], friction or 0.0, ball_coating or [])
+        text = case_text(ball, load, substrate, coating or [], friction or 0.0, ball_coating or [], approach)
     except ValueError as error:
         raise CommandError(str(error)) from None
     return parse_case(text.encode("utf-8", errors="replace"), Path("options"))
@@ -207,6 +214,8 @@ def _table(words: Sequence[str], figures: Sequence[str]) -> Table:
 def _print(case: Case, first: Answer, apart: Sequence[Difference], halved: Sequence[Difference]) -> None:
     besides = {"elements − this": apart, "half the sub-layers − this": halved}
     more = {head: {one.key: one for one in found} for head, found in besides.items() if found}
+    units = units_of(case.problem)
+    decimals = max(2, 3 - math.floor(math.log10(first.numbers["contact_radius"][0] / units.metre)))
 
     def checked(key: tuple[str, ...], unit: float) -> list[str]:
         shown = {head: f"{found[key].value / unit:+.1e}" for head, found in more.items()}
@@ -214,9 +223,11 @@ def _print(case: Case, first: Answer, apart: Sequence[Difference], halved: Seque
         return [f"[bold red]{s}[/]" if beyond and h.startswith("elements") else s for h, s in shown.items()]
 
     numbers = _table(("contact", "unit"), ("value", "±", *more))
-    table = _table(("largest", "place"), ("MPa", "± MPa", "x um", "z um", *(f"{head} MPa" for head in more)))
+    shown_in = (units.stress, f"± {units.stress}", f"x {units.length}", f"z {units.length}")
+    table = _table(("largest", "place"), (*shown_in, *(f"{head} {units.stress}" for head in more)))
     for name, (value, stated) in first.numbers.items():
-        unit, scale = ("MPa", 1e6) if QUANTITIES[name].unit == "Pa" else ("um", 1e-6)
+        pressure = QUANTITIES[name].unit == "Pa"
+        unit, scale = (units.stress, units.pascal) if pressure else (units.length, units.metre)
         cells = [_value(value / scale, stated and stated / scale), _spread(stated, scale)]
         numbers.add_row(QUANTITIES[name].symbol, unit, *cells, *checked((name,), scale))
     body = FLAT
@@ -226,9 +237,11 @@ def _print(case: Case, first: Answer, apart: Sequence[Difference], halved: Seque
             body = at.body
         where = body_label(case.problem, at.body, at.where)
         key = (at.body, at.quantity, at.where)
-        places = ["-", "-"] if math.isnan(at.x) else [f"{at.x * 1e6:.2f}", f"{at.z * 1e6:.2f}"]
-        shown = [_value(at.value / 1e6, at.uncertainty / 1e6), _spread(at.uncertainty, 1e6)]
-        table.add_row(at.quantity, where, *shown, *places, *checked(key, 1e6))
+        rounded = (round(s / units.metre, decimals) + 0.0 for s in (at.x, at.z))  # no -0
+        places = ["-" if math.isnan(at.x) else f"{s:.{decimals}f}" for s in rounded]
+        shown = [_value(at.value / units.pascal, at.uncertainty / units.pascal)]
+        shown.append(_spread(at.uncertainty, units.pascal))
+        table.add_row(at.quantity, where, *shown, *places, *checked(key, units.pascal))
     said = (summary(case.problem, first, case.names), agreement(first, tuple(apart)))
     print_out(
         f"[bold]{escape(case.title)}[/]",

@@ -41,7 +41,7 @@ class Assumption:
 
 
 ASSUMPTIONS: dict[str, Assumption] = {
-    "sphere": Assumption(PARABOLA, of_sphere, warned="contact radius a_h"),
+    "sphere": Assumption(PARABOLA, of_sphere, warned="contact radius a ="),
     "goodman": Assumption(GOODMAN, of_goodman),
     "bodies": Assumption(HALF_SPACES, of_half_spaces),
     "strains": Assumption(SMALL_STRAINS, read=of_pair),

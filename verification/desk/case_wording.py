@@ -30,13 +30,16 @@ FORMS = {
 
 def case_text(
     ball: str,
-    load: str,
+    load: str | None,
     substrate: str,
     coatings: Sequence[str] = (),
     friction: float = 0.0,
     on_ball: Sequence[str] = (),
+    approach: str | None = None,
 ) -> str:
     """The case file of a problem in words; coatings from the surface of each body inwards.
+
+    approach : in place of the load, which then is None.
 
     Raises ValueError where the number of words is wrong, naming the option.
     """
@@ -50,9 +53,12 @@ def case_text(
     called, solid = _solid("--substrate", substrate)
     E, nu = map(_toml, solid)
     on = ", ".join(_coating("--coating", text) for text in coatings)
+    pressed = "".join(
+        f"{key} = {_toml(word)}\n" for key, word in (("load", load), ("approach", approach)) if word
+    )
     return (
         'title = "From the command line"\n[problem]\n'
-        f"{key} = {_toml(size)}\nload = {_toml(load)}\nfriction = {friction!r}\n"
+        f"{key} = {_toml(size)}\n{pressed}friction = {friction!r}\n"
         f"substrate = {{ {called}E = {E}, nu = {nu} }}\n{elastic}coatings = [{on}]\n"
     )
 

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from verification.desk.answer_stresses import Course, Extreme, stresses
+from verification.desk.stack_text import units_of
 from verification.problem.coated_contact import FLAT, CoatedContact
+from verification.problem.display_units import Units
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.running.slicing import sliced
 from verification.sources.source_registry import solvers
@@ -108,14 +110,17 @@ ON_AXIS = 5e-3  # of a place from the axis, over a
 
 
 def summary(problem: CoatedContact, found: Answer, names: Names) -> str:
-    """Where both bodies are pulled and yield the most, and the interfaces are sheared; three digits in MPa.
+    """Where both bodies are pulled and yield the most, and the interfaces are sheared, in three digits.
 
     The largest tension of a coating comes first, then that of all where it is elsewhere; then the largest
     sigma_xx at the base of a coating, which cracks from there too.  names : of the coatings, see ``Case``.
     """
-    a, sliding = found.numbers["contact_radius"][0], problem.friction > 0
+    a, sliding, units = found.numbers["contact_radius"][0], problem.friction > 0, units_of(problem)
     (largest, *_), coatings = _ranked(found, "sigma_1"), _ranked(found, "sigma_1", "coating")
     bases, (von_mises, *_) = _ranked(found, "sigma_xx", "base of"), _ranked(found, "von_mises")
+
+    def stress(at: Extreme) -> str:
+        return f"{_three_digits(at.value / units.pascal)} {units.stress}"
 
     def name(at: Extreme) -> str:
         where = "the substrate" if at.where == "substrate" else with_name(at.body, at.where, names)
@@ -125,15 +130,15 @@ def summary(problem: CoatedContact, found: Answer, names: Names) -> str:
         return f"{where} of the {at.body}" if coated else f"the {at.body}"
 
     def said(at: Extreme) -> str:
-        return f"{_mpa(at)} in {name(at)}, {_place(at, a, sliding=sliding)}"
+        return f"{stress(at)} in {name(at)}, {_place(at, a, units, sliding=sliding)}"
 
     pulled = [at for at in (*coatings[:1], largest) if at.value > 0]
     parts = [f"Largest tension {said(largest)}"] if pulled else ["No tension"]
     if pulled and pulled[0] is not largest:
         parts = [f"Largest tension of the coatings {said(pulled[0])}", f"of all {said(largest)}"]
-    parts += [f"{_mpa(at)} at the {name(at)}" for at in bases[:1] if at.value > 0]
-    parts += [f"{name(at)} sheared by {_mpa(at)}" for at in found.extremes if at.quantity == "|sigma_xz|"]
-    parts.append(f"von Mises stress up to {_mpa(von_mises)} in {name(von_mises)}")
+    parts += [f"{stress(at)} at the {name(at)}" for at in bases[:1] if at.value > 0]
+    parts += [f"{name(at)} sheared by {stress(at)}" for at in found.extremes if at.quantity == "|sigma_xz|"]
+    parts.append(f"von Mises stress up to {stress(von_mises)} in {name(von_mises)}")
     return f"{'; '.join(parts)}."
 
 
@@ -169,13 +174,16 @@ def _ranked(found: Answer, quantity: str, where: str = "") -> list[Extreme]:
     return sorted(those, key=lambda at: -at.value)
 
 
-def _mpa(at: Extreme) -> str:
-    return f"{np.format_float_positional(at.value / 1e6, precision=3, fractional=False, trim='-')} MPa"
+def _three_digits(value: float) -> str:
+    return np.format_float_positional(value, precision=3, fractional=False, trim="-")
 
 
-def _place(at: Extreme, a: float, *, sliding: bool) -> str:
-    depth = "at its surface" if at.z == 0 else f"at z = {at.z * 1e6:.3g} um"
+def _place(at: Extreme, a: float, units: Units, *, sliding: bool) -> str:
+    def length(value: float) -> str:
+        return f"{_three_digits(value / units.metre)} {units.length}"
+
+    depth = "at its surface" if at.z == 0 else f"at z = {length(at.z)}"
     if abs(at.x) < ON_AXIS * a:
         return f"{depth} on the axis"
     side = ("behind" if at.x < 0 else "ahead of") if sliding else "from"
-    return f"{depth}, {abs(at.x) * 1e6:.3g} um {side} the axis"
+    return f"{depth}, {length(abs(at.x))} {side} the axis"

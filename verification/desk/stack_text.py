@@ -12,6 +12,8 @@ from verification.cases.random_problems import (
     THICKNESS,
 )
 from verification.problem.coated_contact import BALL, FLAT, CoatedContact
+from verification.problem.display_units import Units, prefixed
+from verification.sources.load_of_approach import own_radius
 
 FILMS = (FILM_THICKNESS[0], OVER_INTERLAYER[1])
 
@@ -24,25 +26,31 @@ def stack(case: Case) -> str:
     if problem.ball:
         found += reversed(_layers(case, BALL))
     base = case.names.get(FLAT, ("",))[-1]
-    return " / ".join([*found, *_layers(case, FLAT), base or f"substrate {_gpa(problem.substrate[0])}"])
+    return " / ".join(
+        [*found, *_layers(case, FLAT), base or f"substrate {prefixed(problem.substrate[0], 'Pa')}"]
+    )
 
 
 def _layers(case: Case, body: str) -> list[str]:
     """Each coating of ``body`` with its thickness, from its surface inwards."""
-    names, found = case.names.get(body, ()), []
+    names, found, units = case.names.get(body, ()), [], units_of(case.problem)
     for i, layers in enumerate(_coatings(case.problem.seen_from(body), case.layers.get(body))):
         name = names[i] if i < len(names) else ""
-        E = _course(case, body, i) or _gpa(layers[0][0])
-        found.append(_thickness(layers, name) + ("" if name else f" of {E.partition(',')[0]}"))
+        E = _course(case, body, i) or prefixed(layers[0][0], "Pa")
+        found.append(_thickness(layers, name, units) + ("" if name else f" of {E.partition(',')[0]}"))
     return found
 
 
 def described(case: Case) -> list[str]:
     """The problem, a line for each body, load and coating."""
-    problem = case.problem
+    problem, units = case.problem, units_of(case.problem)
     kind = "rigid" if problem.ball is None else _solid(*problem.ball[:2])
-    size = f"R = {problem.radius * 1e3:.4g} mm (diameter {2e3 * problem.radius:.4g} mm), {kind}"
-    lines = [f"ball        {size}; W = {problem.load:.4g} N, f = {problem.friction:g}"]
+    size = f"R = {prefixed(problem.radius, 'm')} (diameter {prefixed(2 * problem.radius, 'm')}), {kind}"
+    lines = [f"ball        {size}; {_pressed(problem, units)}"]
+    if case.approach is not None:
+        lines.append(
+            f"            W is the load of the given approach of {units.shown_length(case.approach)}"
+        )
     for body in problem.bodies:
         seen, names, begin = problem.seen_from(body), case.names.get(body, ()), 0
         for i, layers in enumerate(_coatings(seen, case.layers.get(body)), start=1):
@@ -51,8 +59,9 @@ def described(case: Case) -> list[str]:
             E, nu, _ = layers[0]
             given = _course(case, body, i - 1)
             solid = f"E = {given}, as {n} sub-layers, nu = {nu:g}" if given else _solid(E, nu)
-            more = f", residual stress {_range(stress[0] / 1e6, stress[-1] / 1e6)} MPa" if any(stress) else ""
-            thickness = _thickness(layers, names[i - 1] if names else "")
+            ends = _range(stress[0] / units.pascal, stress[-1] / units.pascal)
+            more = f", residual stress {ends} {units.stress}" if any(stress) else ""
+            thickness = _thickness(layers, names[i - 1] if names else "", units)
             lines.append(f"{on} {i}   "[:12] + f"{thickness}, {solid}{more}")
             begin += n
         if body == FLAT:
@@ -62,7 +71,16 @@ def described(case: Case) -> list[str]:
 
 def conditions(problem: CoatedContact) -> str:
     """Ball, load and friction in one line."""
-    return f"R = {problem.radius * 1e3:.4g} mm, W = {problem.load:.4g} N, f = {problem.friction:g}"
+    return f"R = {prefixed(problem.radius, 'm')}, {_pressed(problem, units_of(problem))}"
+
+
+def units_of(problem: CoatedContact) -> Units:
+    """The units of every answer to ``problem``."""
+    return Units.of_contact(problem, own_radius(problem))
+
+
+def _pressed(problem: CoatedContact, units: Units) -> str:
+    return f"W = {units.shown_force(problem.load)}, f = {problem.friction:g}"
 
 
 def body_label(problem: CoatedContact, body: str, where: str) -> str:
@@ -108,9 +126,9 @@ def _coatings(
     return [seen.coatings[begin:end] for begin, end in pairwise(ends)]
 
 
-def _thickness(layers: tuple[tuple[float, float, float], ...], name: str) -> str:
+def _thickness(layers: tuple[tuple[float, float, float], ...], name: str, units: Units) -> str:
     """The thickness of a coating after its name: "DLC 2 um"."""
-    return f"{name} {sum(h for *_, h in layers) * 1e6:.4g} um".strip()
+    return f"{name} {units.shown_length(sum(h for *_, h in layers))}".strip()
 
 
 def _course(case: Case, body: str, coating: int) -> str:
@@ -119,11 +137,7 @@ def _course(case: Case, body: str, coating: int) -> str:
 
 
 def _solid(E: float, nu: float) -> str:
-    return f"E = {_gpa(E)}, nu = {nu:g}"
-
-
-def _gpa(E: float) -> str:
-    return f"{E / 1e9:.4g} GPa"
+    return f"E = {prefixed(E, 'Pa')}, nu = {nu:g}"
 
 
 def _range(low: float, high: float) -> str:

@@ -5,7 +5,7 @@ positive, pressure and load positive in compression. SI units.
 """
 
 from dataclasses import dataclass, fields, replace
-from math import isfinite, pi
+from math import isclose, isfinite, pi
 from typing import Any, Protocol
 
 import numpy as np
@@ -44,6 +44,12 @@ class CoatedContact:
             require_shape(self.indenter)
             if self.ball is not None:
                 raise ValueError("an elastic ball and an indenter are both given; give one")
+            shape, numbers = self.indenter
+            if shape == "ellipsoid" and not isclose(self.radius**2, numbers[0] * numbers[1], rel_tol=1e-9):
+                mean = (numbers[0] * numbers[1]) ** 0.5
+                raise ValueError(
+                    f"radius = {self.radius:g} m; of these radii it is sqrt(R_x R_y), {mean:g} m"
+                )
         _require_positive("radius", self.radius)
         _require_positive("load", self.load)
         _require_solid(self.coatings, self.substrate, self.friction)

@@ -51,7 +51,7 @@ def case_task(case: Case | PublishedCase, folder: Path, *, fields: bool = False)
         work, lost = partial(solve_and_store_published, case, path), partial(published_run.failed, case)
         return Task(case.name, work, path, read, lost, cost=1.0, ahead=_METHOD_PACKAGES)
     work = partial(solve_and_store, case, path, plane_path(folder, case.name), folder if fields else None)
-    alike = repr((replace(case.problem, friction=0.0), sorted(case.numerics.items())))
+    alike = repr((replace(case.problem, friction=0.0), case.approach, sorted(case.numerics.items())))
     lost = partial(CaseResult.failed, case, warnings=case.warnings)
     return Task(case.name, work, path, read, lost, cost(case), alike, ahead=_METHOD_PACKAGES)
 

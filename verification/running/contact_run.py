@@ -49,7 +49,7 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
     for source in (name for name in available if name in wanted):
         begin = time.perf_counter()
         try:
-            solution = available[source](case.problem, case.numerics.get(source, {}))
+            solution = available[source](case.problem, case.keywords(source))
             for name in SCALARS:
                 if not np.isfinite(value := QUANTITIES[name].value(solution, case.problem)):
                     raise ValueError(f"{name} = {value}; the solution is not finite")

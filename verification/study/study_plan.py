@@ -26,6 +26,7 @@ from verification.cases.unit_numbers import Metres, Newtons, Units, units_of
 from verification.problem.array_types import Ball, Coatings
 from verification.problem.coated_contact import FLAT, CoatedContact
 from verification.running.json_records import plain
+from verification.sources.load_of_approach import own_radius
 from verification.sources.source_registry import METHODS
 from verification.study.choice.failure_criteria import Criteria
 from verification.study.solve_cache import solve_key
@@ -338,12 +339,15 @@ def parse_study(raw: bytes, path: Path) -> Study:
     over, under = p.held(bare.a_h)
     refuse_unfit_scales(path, replace(bare, coatings=(*over, *under), ball=ball))
     contacts = [bare, replace(bare, load=sweep.load.start)] if sweep.load else [bare]
-    for a_h, (i, h) in product([one.a_h for one in contacts], enumerate(thicknesses)):
-        low, high = (bound * a_h * 1e6 for bound in SUPPORTED)
-        if not low <= h * 1e6 <= high:
+    ends = {min(thicknesses), max(thicknesses)}
+    for one, E, h in product(contacts, {min(moduli), max(moduli)}, sorted(ends)):
+        a = own_radius(replace(one, coatings=(*over, (E, p.varied.nu, h), *under), ball=ball))
+        low, high = (bound * a for bound in SUPPORTED)
+        if not low <= h <= high:
+            shown = Units.of_contact(one, a).shown_length
             raise CaseError(
-                f"{path}: sweep.{key}: value {i + 1} is {h * 1e6:.3g} um; it must be {low:.3g} to {high:.3g} "
-                f"um, {SUPPORTED[0]:g} to {SUPPORTED[1]:g} contact radii{slips(h)}"
+                f"{path}: sweep.{key}: value {thicknesses.index(h) + 1} is {shown(h)}; it must be "
+                f"{shown(low)} to {shown(high)}, {SUPPORTED[0]:g} to {SUPPORTED[1]:g} contact radii{slips(h)}"
             )
     for E in moduli:
         if not 1e-3 <= E / p.substrate.E <= 1e3:

@@ -59,7 +59,7 @@ WRONG = [
     ({"--coating": "0.002, 180e9, 0.2"}, "mm"),
     ({"--coating": "20 mm, 180 GPa, 0.2"}, "--force"),
     ({"--coating": "2 um, 180 GPa"}, "thickness, E, nu"),
-    ({"--coating": "2 um, 2 MPa, 0.49"}, "smallest"),
+    ({"--coating": "2 um, 900 GPa, 0.2", "--substrate": "50 MPa, 0.3"}, "lower its modulus"),
     ({"--coating": "1 nm, 180 GPa, 0.2"}, "0.109 um"),
     ({"--plot": "missing/stress.png"}, "create"),
     ({"--plot": "stress.gif"}, ".png"),

@@ -83,7 +83,7 @@ def test_warning_appears_exactly_beyond_the_limit():
 
 
 def test_wide_contact_is_warned_of_once():
-    told = ("contact radius a_h = 0.4 R is above 0.1 R: at the contact edge",)
+    told = ("contact radius a = 0.4 R is above 0.1 R: at the contact edge",)
     sphere = model_of(0.1, "parabola for the sphere")
     assert warnings_of(sphere, told) == ()
     assert warnings_of(model_of(0.1), told) != ()

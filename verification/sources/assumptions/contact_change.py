@@ -12,6 +12,7 @@ import numpy as np
 
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, keywords
+from verification.problem.display_units import prefixed
 from verification.sources.assumptions.sliding_coupling import SlidingExpansion, first_harmonic
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import PARABOLA, SPHERE, ExactSolution, Gap
@@ -124,7 +125,7 @@ def require_thick(problem: CoatedContact) -> None:
     """Raises ValueError where an outer coating is thinner than ``THINNEST``."""
     outer = [layers[0] for body in problem.bodies if (layers := problem.seen_from(body).coatings)]
     if any(h < THINNEST * problem.a_h for *_, h in outer):
-        least = f"{THINNEST * problem.a_h * 1e6:.2g} um ({THINNEST:g} a_h)"
+        least = f"{prefixed(THINNEST * problem.a_h, 'm', 2)} ({THINNEST:g} a_h)"
         raise ValueError(f"an outer coating thinner than {least}, its model would need too long")
 
 

@@ -247,7 +247,7 @@ def _solve(
 ) -> ExactSolution:
     """Contact of the flat with a rigid ball, or of the two ``solids``, flat and ball."""
     E_star = combined_modulus(solids)
-    guess = _radius_guess(radius, load, E_star, solids)
+    guess = radius_estimate(radius, load, E_star, solids)
     x_i, w_i = gauss_legendre(_contact_nodes(nodes, guess, solids))
     s, weight = 0.5 * (1 + x_i), 0.5 * w_i
     k, k_weight = kernel_wavenumbers(solids, guess, panel, tail)
@@ -273,7 +273,12 @@ def _solve(
 
     def excess(log_a: float) -> float:
         a = float(np.exp(log_a))
-        return float(np.log(2 * np.pi * a * (weight @ contact(a)[0]) / load))
+        carried = float(2 * np.pi * a * (weight @ contact(a)[0]))
+        if not carried > 0:
+            raise ValueError(
+                f"{load:g} N on a = {a:g} m: the layers' compliance loses its digits; check the moduli"
+            )
+        return float(np.log(carried / load))
 
     widest = np.log(gap.widest * radius)
     low = high = min(np.log(guess), widest)
@@ -307,7 +312,7 @@ def compliance(solids: tuple[Solid, ...], E_star: float, k: Array) -> Array:
     return np.sum([share * M for share, M in zip(shares, responses, strict=True)], axis=0)
 
 
-def _radius_guess(radius: float, load: float, E_star: float, solids: tuple[Solid, ...]) -> float:
+def radius_estimate(radius: float, load: float, E_star: float, solids: tuple[Solid, ...]) -> float:
     """Hertz radius with the contact modulus seen by waves of that very length."""
     a = float((3 * load * radius / (4 * E_star)) ** (1 / 3))
     for _ in range(40):
