@@ -349,8 +349,9 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact, pressed: str = "load
             low, high = SUPPORTED
             if not low <= h / a <= high:
                 reason = (
-                    f"{unit.shown_length(h)} is {h / a:.3g} times the contact radius; both methods support {low:g} "
-                    f"to {high:g}, {unit.shown_length(low * a, 3)} to {unit.shown_length(high * a, 3)}"
+                    f"{unit.shown_length(h)} is {h / a:.3g} times the contact radius; both methods support "
+                    f"{low:g} to {high:g}, {unit.shown_length(low * a, 3)}"
+                    f" to {unit.shown_length(high * a, 3)}"
                 )
                 key = spoken(f"{before(body)}coatings.{i}.thickness")
                 raise CaseError(f"{path}: {key}: {reason}{slips}")
