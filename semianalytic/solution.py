@@ -176,7 +176,21 @@ class Solution:
 
         With a smooth edge that of its shape, fitted to the patches; of patches alone p^2 is interpolated.
         """
-        return self._level.pressure(x, y)
+        return self._regular(self._level.pressure(x, y), x, y, 0.0)
+
+    @property
+    def singular_radii(self) -> tuple[float, ...]:
+        """Radii [m] of the surface where a given pressure jumps; () of a contact.
+
+        Pressure and stress are NaN there: under friction sigma_xx is infinite, without it depends on the
+        direction of approach.
+        """
+        return () if self._level.given is None else self._level.given.singular_radii
+
+    def _regular(self, value: Array, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """``value``, or NaN where a given pressure leaves none."""
+        given = self._level.given
+        return value if given is None else np.where(given.is_singular(x, y, z), np.nan, value)
 
     def stress(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
@@ -187,7 +201,7 @@ class Solution:
         picks the side of an interface, None the upper one.  body : "flat" or "ball".
         Raises ValueError for z < 0, for a layer that z does not lie in, and for a rigid ball.
         """
-        return fields.stress([self._level], self._body.named(body), x, y, z, layer)[0]
+        return self._regular(fields.stress([self._level], self._body.named(body), x, y, z, layer)[0], x, y, z)
 
     def stress_plane(self, z: float, layer: int | None = None, body: str = "flat") -> Array:
         """Stress tensor [Pa] below every patch centre at one depth, shape (3, 3, n, n), by seven FFTs.
@@ -243,7 +257,7 @@ class Solution:
         """
         least = (2 * self._other_than("patch size") + RESOLUTION) * self.peak_pressure
         if self._level.given is not None:
-            return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
+            return self._regular(np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y))), x, y, 0.0)
         if self._level.shape is not None:
             return self._smooth_uncertainty(x, y)
         return 2 * (interpolated(self.nodes, self._refinement, x, y, order=1) + least) + self._rim(x, y, 0.0)
@@ -336,7 +350,7 @@ class Solution:
             total += floor * self.peak_pressure + self._rim(x, y, z)
             deep = np.asarray(z) >= 4 * self.diagnostics.patch_size
             total += np.where(deep, *EVALUATION[::-1]) * self.peak_pressure
-        return sigma, share * total
+        return self._regular(sigma, x, y, z), self._regular(share * total, x, y, z)
 
     def _share(self, own: Array, largest: Array, of: tuple[float, float]) -> Array:
         """Share of each component in the uncertainty, by its ``own`` `_change` and the ``largest`` of all."""

@@ -294,6 +294,7 @@ def solve_prescribed(
         check_finite(pressure=pressure)
         pressure = partial(np.full_like, fill_value=float(pressure))
     shape = prescribed.Prescribed(load_radius, pressure)
+    shape.refuse_inner_jump()
 
     def level(n: int, wider: float, numerics: Numerics) -> Level:
         return _loaded(Grid(odd(wider * n), 2.04 * load_radius / n), shape, body, numerics)
