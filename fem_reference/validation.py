@@ -167,8 +167,8 @@ def _check_material(where: str, E: float, nu: float) -> None:
         raise ValueError(f"nu {where} = {nu!r}; an isotropic solid has -1 < nu <= 0.5")
     if nu == 0.5:
         raise ValueError(
-            f"nu {where} = {nu!r}; elements in displacements need -1 < nu < 0.5; solve with 0.499 and with 0.498 "
-            "and extrapolate, under a confined film of thickness h with a tenth of (h/a)^2 for both steps"
+            f"nu {where} = {nu!r}; elements need -1 < nu < 0.5; solve with 0.5 - s and 0.5 - 2 s and "
+            "extrapolate, s = 1e-3, for a thin film on a stiff base no more than 0.01 (h/a)^2"
         )
 
 

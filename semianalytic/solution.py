@@ -82,6 +82,7 @@ class Solution:
     approach [m].  peak_pressure [Pa] : largest pressure, which sits off the axis under stiff thin coatings.
     surface_nodes [m] : x on y = 0 at which no pressure is interpolated, past 2 contact radii.
     neighbours : contacts that give ``stiffness``; None for patches alone.
+    singular_radii [m] : of the surface, where a given pressure jumps: there pressure and stress are NaN.
     """
 
     contact_radius: float
@@ -97,6 +98,7 @@ class Solution:
     _body: Body = field(repr=False)
     neighbours: Neighbours | None = field(default=None, repr=False)
     relative: bool = False
+    singular_radii: tuple[float, ...] = ()
 
     @classmethod
     def of_levels(
@@ -142,6 +144,7 @@ class Solution:
             coarser=coarser,
             _level=level,
             _body=body,
+            singular_radii=level.given.singular_radii if level.given else (),
         )
 
     @property
@@ -163,10 +166,7 @@ class Solution:
         return replace(self, relative=True)
 
     def with_friction(self, friction: float) -> "Solution":
-        """The same contact sliding with another friction coefficient, which leaves the pressure unchanged.
-
-        Raises ValueError unless it is finite.
-        """
+        """The same contact and pressure, sliding with another coefficient. Raises ValueError unless finite."""
         check_finite(friction=friction)
         coarser = None if self.coarser is None else self.coarser.with_friction(friction)
         return replace(self, coarser=coarser, _body=self._body.with_friction(float(friction)))
@@ -176,21 +176,7 @@ class Solution:
 
         With a smooth edge that of its shape, fitted to the patches; of patches alone p^2 is interpolated.
         """
-        return self._regular(self._level.pressure(x, y), x, y, 0.0)
-
-    @property
-    def singular_radii(self) -> tuple[float, ...]:
-        """Radii [m] of the surface where a given pressure jumps; () of a contact.
-
-        Pressure and stress are NaN there: under friction sigma_xx is infinite, without it depends on the
-        direction of approach.
-        """
-        return () if self._level.given is None else self._level.given.singular_radii
-
-    def _regular(self, value: Array, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        """``value``, or NaN where a given pressure leaves none."""
-        given = self._level.given
-        return value if given is None else np.where(given.is_singular(x, y, z), np.nan, value)
+        return self._level.pressure(x, y)
 
     def stress(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
@@ -201,7 +187,7 @@ class Solution:
         picks the side of an interface, None the upper one.  body : "flat" or "ball".
         Raises ValueError for z < 0, for a layer that z does not lie in, and for a rigid ball.
         """
-        return self._regular(fields.stress([self._level], self._body.named(body), x, y, z, layer)[0], x, y, z)
+        return fields.stress([self._level], self._body.named(body), x, y, z, layer)[0]
 
     def stress_plane(self, z: float, layer: int | None = None, body: str = "flat") -> Array:
         """Stress tensor [Pa] below every patch centre at one depth, shape (3, 3, n, n), by seven FFTs.
@@ -255,9 +241,9 @@ class Solution:
         pressure due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
         Raises ValueError where no uncertainty was estimated.
         """
-        least = (2 * self._other_than("patch size") + RESOLUTION) * self.peak_pressure
         if self._level.given is not None:
-            return self._regular(np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y))), x, y, 0.0)
+            return 0 * self.pressure(x, y)
+        least = (2 * self._other_than("patch size") + RESOLUTION) * self.peak_pressure
         if self._level.shape is not None:
             return self._smooth_uncertainty(x, y)
         return 2 * (interpolated(self.nodes, self._refinement, x, y, order=1) + least) + self._rim(x, y, 0.0)
@@ -350,7 +336,7 @@ class Solution:
             total += floor * self.peak_pressure + self._rim(x, y, z)
             deep = np.asarray(z) >= 4 * self.diagnostics.patch_size
             total += np.where(deep, *EVALUATION[::-1]) * self.peak_pressure
-        return self._regular(sigma, x, y, z), self._regular(share * total, x, y, z)
+        return sigma, share * total
 
     def _share(self, own: Array, largest: Array, of: tuple[float, float]) -> Array:
         """Share of each component in the uncertainty, by its ``own`` `_change` and the ``largest`` of all."""
