@@ -94,7 +94,7 @@ class _Extrapolated:
             return None
         rows, total = [], {}
         for name in (name for name in SCALARS if not QUANTITIES[name].derived):
-            own = self._summed(lambda one, name=name: getattr(one.uncertainty, name))
+            own = self._summed(attrgetter(f"uncertainty.{name}"))
             bend = abs(self._bend(attrgetter(name)))
             rows += [(name, "the three solutions", own), (name, "limit", bend)]
             total[name] = own + bend
