@@ -200,6 +200,7 @@ def solve_prescribed(
         states=(state,),
         estimates=found,
         units=unit,
+        singular_radii=p.singular_radii,
     )
     return frictionless.with_friction(friction)
 

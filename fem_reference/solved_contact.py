@@ -12,6 +12,8 @@ from .scaling import Units
 from .state import ElasticState
 from .validation import check_friction
 
+AT_SINGULAR = 1e-8  # distance from a singular radius over that of the load
+
 
 @dataclass(frozen=True, kw_only=True)
 class Diagnostics:
@@ -51,6 +53,8 @@ class Solution:
     stiffness     : d load / d approach [N/m] of the sphere, as of a flat punch of its contact radius
         (Pharr, Oliver and Brotzen, J. Mater. Res. 7 (1992) 613-617); None under a prescribed pressure
     stiffness_uncertainty : absolute, None when not estimated
+    singular_radii : of the surface [m], where a prescribed pressure jumps or is infinite: pressure and stress
+        are NaN there. sigma_xx is infinite under friction, and depends on the direction of approach without
     """
 
     contact_radius: float
@@ -63,6 +67,7 @@ class Solution:
     units: Units = field(repr=False)
     stiffness: float | None = None
     stiffness_uncertainty: float | None = None
+    singular_radii: tuple[float, ...] = ()
 
     def with_friction(self, friction: float) -> "Solution":
         """The same contact, sliding with another coefficient ``friction`` of q = f p, or at rest with 0.
@@ -110,14 +115,15 @@ class Solution:
 
     def pressure(self, x: Any, y: Any = 0.0) -> np.ndarray:
         """Contact pressure [Pa] at the surface points (x, y), broadcast; zero outside the contact."""
-        return self.state.pressure(self._radius(x, y)) * self.units.pressure
+        return self._regular(self.state.pressure(self._radius(x, y)) * self.units.pressure, x, y, 0.0)
 
     def pressure_uncertainty(self, x: Any, y: Any = 0.0) -> np.ndarray:
         """Absolute numerical uncertainty of ``pressure`` [Pa], same shape.
 
         Raises ValueError when the solution was solved without an estimate.
         """
-        return self._estimated("flat").pressure(self._radius(x, y)) * self.units.pressure
+        U = self._estimated("flat").pressure(self._radius(x, y)) * self.units.pressure
+        return self._regular(U, x, y, 0.0)
 
     def stress(self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat") -> np.ndarray:
         """Stress tensor sigma[i, j, ...] [Pa] in x, y, z; shape (3, 3) + broadcast shape of the points.
@@ -127,7 +133,7 @@ class Solution:
         body : "flat" or "ball"
         Raises ValueError for a point outside the solid or outside its ``layer``, and for a rigid ball.
         """
-        return self._stress(self._points(x, y, z, layer, body), body)
+        return self._regular(self._stress(self._points(x, y, z, layer, body), body), x, y, z)
 
     def stress_with_uncertainty(
         self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat"
@@ -143,7 +149,7 @@ class Solution:
             error = error + estimates.tangential(points.located) * np.stack([cos] * 4 + [sin] * 2)
         # absolute values of all products in the rotation add up
         U = tensor(error * self.units.pressure, cos, sin, sign=1.0).reshape(3, 3, *points.shape)
-        return self._stress(points, body), U
+        return self._regular(self._stress(points, body), x, y, z), self._regular(U, x, y, z)
 
     def stress_uncertainty(
         self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat"
@@ -169,6 +175,14 @@ class Solution:
             error = error + estimates.tangential.displacement(points.located) * np.stack([cos, sin, cos])
         U = np.stack([error[0] * cos + error[1] * sin, error[0] * sin + error[1] * cos, error[2]])
         return U.reshape(3, *points.shape) * self.units.displacement
+
+    def _regular(self, value: np.ndarray, x: Any, y: Any, z: Any) -> np.ndarray:
+        """``value``, or NaN at points closer to ``singular_radii`` than can be told apart from them."""
+        if not self.singular_radii:
+            return value
+        r, z = np.broadcast_arrays(np.hypot(x, y), np.asarray(z, dtype=float))
+        away = np.min([np.hypot(r - one, z) for one in self.singular_radii], axis=0)
+        return np.where(away <= AT_SINGULAR * self.contact_radius, np.nan, value)
 
     def _number(self, body: str) -> int:
         known = ("flat", "ball")[: len(self.states)]

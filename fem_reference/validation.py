@@ -9,10 +9,11 @@ import numpy as np
 from .line_quadrature import gauss_legendre
 
 MAX_COATINGS = 50
-MAX_CONTRAST = 1e4
+MAX_CONTRAST = 1e9
 MIN_THICKNESS = 1e-4
 MAX_THICKNESS = 1e4
 LARGEST_RADIUS = 0.9  # of the contact over that of the sphere
+STEP = 1e-4  # of a given pressure at one radius, over its mean magnitude: what is less is no jump
 
 
 def check_positive(**quantities: float) -> None:
@@ -59,7 +60,7 @@ def check_materials(
         if not 1 / MAX_CONTRAST <= contrast <= MAX_CONTRAST:
             raise ValueError(
                 f"E of coating {k} is {contrast:g} times that of the substrate; the solver supports ratios "
-                f"between {1 / MAX_CONTRAST:g} and {MAX_CONTRAST:g}, treat the stiffer solid as rigid instead"
+                f"between {1 / MAX_CONTRAST:g} and {MAX_CONTRAST:g}, change one of the moduli"
             )
     _check_material("of the substrate", *substrate)
 
@@ -111,6 +112,28 @@ class GivenPressure:
         values[inside] = self.given(self.radius * np.minimum(r[inside], 1.0))
         return values / self.scale
 
+    @property
+    def singular_radii(self) -> tuple[float, ...]:
+        """The rim [m] where the pressure jumps to zero there; () where it does not."""
+        return (self.radius,) if abs(self(np.array([1.0]))[0]) > STEP else ()
+
+    def check_inside(self) -> None:
+        """Raise ValueError where the pressure jumps inside the load, which the mesh is not made for.
+
+        Between 32 further radii the largest step becomes ever smaller unless it is a jump.
+        """
+        r, step = np.linspace(0.005, 1.0, 1000)[:-1], np.inf
+        for _ in range(12):
+            steps = np.abs(np.diff(self(r)))
+            k, step = int(np.argmax(steps)), float(steps.max())
+            r = np.linspace(r[k], r[k + 1], 33)
+        if step > STEP:
+            at = r[-1] * self.radius
+            raise ValueError(
+                f"pressure(r) jumps at r = {at:g} m, inside load_radius = {self.radius:g} m; solve two loads "
+                f"and add them: one without that jump, and the rest with load_radius = {at:g} m"
+            )
+
 
 def prescribed_pressure(
     pressure: float | Callable[[np.ndarray], np.ndarray], load_radius: float
@@ -122,18 +145,20 @@ def prescribed_pressure(
     if not callable(pressure):
         check_positive(pressure=pressure)
         pressure = partial(np.full_like, fill_value=pressure)
-    # Gauss points avoid r = 0 and r = load_radius, where a callable may be singular
     r, weight = gauss_legendre(40, 0.0, load_radius)
+    r, weight = np.concatenate([[0.0], r, [load_radius]]), np.concatenate([[0.0], weight, [0.0]])
     try:
         values = np.asarray(pressure(r), dtype=float)
     except (TypeError, ValueError) as error:
         raise ValueError(f"pressure(r) fails on an array of radii ({error}); write it with numpy") from error
     if values.shape != r.shape or not np.all(np.isfinite(values)):
-        raise ValueError("pressure(r) has to return one finite number per radius on 0 < r < load_radius")
+        raise ValueError("pressure(r) has to return one finite number per radius on 0 <= r <= load_radius")
     scale = float(np.sum(weight * np.abs(values) * r) / np.sum(weight * r))
     if not scale > 0:
         raise ValueError("pressure(r) is zero everywhere; there is nothing to solve")
-    return GivenPressure(pressure, load_radius, scale)
+    found = GivenPressure(pressure, load_radius, scale)
+    found.check_inside()
+    return found
 
 
 def _check_material(where: str, E: float, nu: float) -> None:
@@ -142,8 +167,8 @@ def _check_material(where: str, E: float, nu: float) -> None:
         raise ValueError(f"nu {where} = {nu!r}; an isotropic solid has -1 < nu <= 0.5")
     if nu == 0.5:
         raise ValueError(
-            f"nu {where} = {nu!r}; the finite element method needs -1 < nu < 0.5, such as 0.499 for nearly "
-            "incompressible"
+            f"nu {where} = {nu!r}; elements need -1 < nu < 0.5; solve with 0.5 - s and 0.5 - 2 s and "
+            "extrapolate, s = 1e-3, for a thin film on a stiff base no more than 0.01 (h/a)^2"
         )
 
 

@@ -25,7 +25,8 @@ def stress(
     out = np.zeros((len(levels), 6, points[0].size))
     _add(out, levels, places, body, points, subsurface.stress, patch_field.stress)
     shape = np.broadcast_shapes(*(np.shape(v) for v in (x, y, z)))
-    return np.array([patch_field.tensor(one) for one in out]).reshape(len(levels), 3, 3, *shape)
+    sigma = np.array([patch_field.tensor(one) for one in out]).reshape(len(levels), 3, 3, *shape)
+    return levels[0].regular(sigma, x, y, z)
 
 
 def displacement(levels: Sequence[Level], body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:

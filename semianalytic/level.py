@@ -84,6 +84,18 @@ class Level:
         return float(np.pi / 4 * edges * d * 0.25 * d / (2 * np.pi * self.radius))
 
     @property
+    def load_at_edge(self) -> float:
+        """Mean square of the pressure on the outermost loaded patches, over that of the peak.
+
+        The approach changes with the place of an edge as the square of the pressure there: not at a smooth
+        edge, in proportion to the radius at that of a flat punch.
+        """
+        p = self.grid.whole(self.found.pressure)
+        loaded = np.pad(p > 0, 1)
+        inner = loaded[2:, 1:-1] & loaded[:-2, 1:-1] & loaded[1:-1, 2:] & loaded[1:-1, :-2]
+        return float(np.mean(p[(p > 0) & ~inner] ** 2) / p.max() ** 2)
+
+    @property
     def whole(self) -> "Level":
         """The same contact on all the patches."""
         whole, found = self.grid.whole, self.found
@@ -158,7 +170,11 @@ class Level:
         if self.rest is not None and self.shape is not None:  # its interpolation ripples beyond the edge
             rest = interpolated(self.nodes, self.grid.whole(self.rest), x, y)
             value = value + np.where(self.shape.inside(np.asarray(x), np.asarray(y)) > 0, rest, 0.0)
-        return np.maximum(value, 0)
+        return self.regular(np.maximum(value, 0), x, y, 0.0)
+
+    def regular(self, value: Array, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """``value`` at points [m], or NaN where a given pressure jumps, which leaves none."""
+        return value if self.given is None else np.where(self.given.is_singular(x, y, z), np.nan, value)
 
     @cached_property
     def rest(self) -> Array | None:

@@ -12,6 +12,7 @@ from semianalytic.ring_quadrature import gauss_legendre
 Array = NDArray[np.floating]
 
 JUMP = 1e-4  # change of the pressure at one radius, over its largest magnitude, that counts as a jump
+AT = 1e-8  # distance from there, over the radius of the load, within which fields are not told apart from it
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,25 +36,35 @@ class Prescribed:
 
     @cached_property
     def singular_radii(self) -> tuple[float, ...]:
-        """Radii [m] at which p jumps or is not finite, where the stress of the surface has no value.
+        """The rim [m] where p jumps to 0 there, so that its stress has no value; () where it does not."""
+        p = np.abs(self.pressure(self.radius * np.linspace(0.0, 1.0, 101)))
+        return (self.radius,) if p[-1] > JUMP * p.max() else ()
 
-        Halving the interval of the larger change, from 1024 intervals on, leaves a change only at a jump; of
-        two jumps in one interval the larger is found.
+    def refuse_inner_jump(self) -> None:
+        """Raise ValueError where p jumps inside the disc: rings are integrated up to its rim.
+
+        Of the largest step between 1024 radii the half with the larger part is kept until nothing is left to
+        halve; what then is left of the step is a jump.
         """
-        low, high = np.arange(1024) / 1024 * self.radius, np.arange(1, 1025) / 1024 * self.radius
-        with np.errstate(all="ignore"):
-            ends = np.abs(self.pressure(np.array([0.0, self.radius])))
-            p_low, p_high = self.pressure(low), self.pressure(high)
-            size = np.max(np.abs(p_low)[1:])
-            for _ in range(44):
-                middle = (low + high) / 2
-                p = self.pressure(middle)
-                left = ~(np.abs(p_high - p) > np.abs(p - p_low))
-                high, p_high = np.where(left, middle, high), np.where(left, p, p_high)
-                low, p_low = np.where(left, low, middle), np.where(left, p_low, p)
-            inside = high[np.abs(p_high - p_low) > JUMP * size]
-        rim = [self.radius] if not ends[1] <= JUMP * size else []
-        return (*([] if np.isfinite(ends[0]) else [0.0]), *map(float, np.unique(inside)), *rim)
+        r = self.radius * np.linspace(0.01, 1.0, 1025)[:-1]
+        p = self.pressure(r)
+        k = int(np.argmax(np.abs(np.diff(p))))
+        low, high = r[k : k + 2]
+        for _ in range(60):
+            middle = (low + high) / 2
+            steps = np.abs(np.diff(self.pressure(np.array([low, middle, high]))))
+            low, high = (low, middle) if steps[0] >= steps[1] else (middle, high)
+        if steps.max() > JUMP * np.abs(p).max():
+            raise ValueError(
+                f"pressure(r) jumps at r = {high:g} m, inside load_radius = {self.radius:g} m; add the "
+                f"solutions of two loads: one that is continuous there, the rest with load_radius {high:g} m"
+            )
+
+    def is_singular(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> NDArray[np.bool_]:
+        """Whether pressure and stress have no value at points [m], broadcast: at ``singular_radii``."""
+        r, z = np.broadcast_arrays(np.hypot(x, y), np.asarray(z, dtype=float))
+        away = np.abs(r[..., None] - self.singular_radii)
+        return np.hypot(away, z[..., None]).min(axis=-1, initial=np.inf) <= AT * self.radius
 
     def of_square(self, square: Array) -> Array:
         """p [Pa] of the square of r [m^2]."""
@@ -64,8 +75,10 @@ class Prescribed:
         t, w = gauss_legendre(200)
         r = self.radius * (1 - t**2)
         p = np.asarray(self.function(r), dtype=float)
-        if p.shape != r.shape or not np.all(np.isfinite(p)):
-            raise ValueError("pressure(r) must return a finite value [Pa] for every r <= load_radius")
+        with np.errstate(all="ignore"):
+            ends = self.pressure(np.array([0.0, self.radius]))
+        if p.shape != r.shape or not np.all(np.isfinite([*p, *ends])):
+            raise ValueError("pressure(r) must return a finite value [Pa] for 0 <= r <= load_radius")
         return float(4 * np.pi * self.radius * np.sum(w * p * r * t))
 
 

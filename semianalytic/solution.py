@@ -82,6 +82,7 @@ class Solution:
     approach [m].  peak_pressure [Pa] : largest pressure, which sits off the axis under stiff thin coatings.
     surface_nodes [m] : x on y = 0 at which no pressure is interpolated, past 2 contact radii.
     neighbours : contacts that give ``stiffness``; None for patches alone.
+    singular_radii [m] : of the surface, where a given pressure jumps: there pressure and stress are NaN.
     """
 
     contact_radius: float
@@ -97,6 +98,7 @@ class Solution:
     _body: Body = field(repr=False)
     neighbours: Neighbours | None = field(default=None, repr=False)
     relative: bool = False
+    singular_radii: tuple[float, ...] = ()
 
     @classmethod
     def of_levels(
@@ -142,6 +144,7 @@ class Solution:
             coarser=coarser,
             _level=level,
             _body=body,
+            singular_radii=level.given.singular_radii if level.given else (),
         )
 
     @property
@@ -163,10 +166,7 @@ class Solution:
         return replace(self, relative=True)
 
     def with_friction(self, friction: float) -> "Solution":
-        """The same contact sliding with another friction coefficient, which leaves the pressure unchanged.
-
-        Raises ValueError unless it is finite.
-        """
+        """The same contact and pressure, sliding with another finite coefficient; ValueError otherwise."""
         check_finite(friction=friction)
         coarser = None if self.coarser is None else self.coarser.with_friction(friction)
         return replace(self, coarser=coarser, _body=self._body.with_friction(float(friction)))
@@ -241,9 +241,9 @@ class Solution:
         pressure due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
         Raises ValueError where no uncertainty was estimated.
         """
-        least = (2 * self._other_than("patch size") + RESOLUTION) * self.peak_pressure
         if self._level.given is not None:
-            return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
+            return 0 * self.pressure(x, y)
+        least = (2 * self._other_than("patch size") + RESOLUTION) * self.peak_pressure
         if self._level.shape is not None:
             return self._smooth_uncertainty(x, y)
         return 2 * (interpolated(self.nodes, self._refinement, x, y, order=1) + least) + self._rim(x, y, 0.0)

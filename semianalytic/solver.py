@@ -41,6 +41,9 @@ LARGEST = 0.9  # contact radius over that of the sphere
 BESIDE = 513  # patches a side, at most, of the grid of contacts at neighbouring loads
 # patches a side of the grid that finds the contact radius, and its half-width over that
 ROUGH, ROOMY = 49, 1.5
+LONG = 8.0  # length over width of a contact, beyond which it has more patches
+# patches across a contact, by which the coarse grid tells its width, and fewer than which are no answer
+NARROW, RESOLVED = 4, 12
 FINER = 1.4  # patches a side of the next grid over the last
 LARGEST_GRID = 2801  # patches a side of the last for ``accuracy``,
 LARGE_GRID = 1401  # and where refining no longer lessens the uncertainty
@@ -82,7 +85,8 @@ def solve(
     solution states what it reached. None : no refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
     indenter : another shape than a sphere, (name, numbers [m]) as in ``indenter_profile``, pressed as by
-    ``indent`` over a square that is found; refined to at most 513 patches a side.
+    ``indent`` over a square that is found; refined to at most 513 patches a side, where
+    the contact is more than 8 times as long as wide in proportion more, of which few are used, up to 2801.
 
     Raises ValueError for input without meaning and for a contact as wide as the sphere, NotConverged when the
     iteration stops short.
@@ -116,10 +120,18 @@ def solve(
 
 
 def _refined(
-    indenter: Indenter, half_width: float, body: Body, numerics: Numerics, estimate_uncertainty: bool
+    indenter: Indenter,
+    half_width: float,
+    body: Body,
+    numerics: Numerics,
+    estimate_uncertainty: bool,
+    most: int = BESIDE,
 ) -> tuple[list[Level], Uncertainty | None]:
     """Levels of a refinement study, further ones until the uncertainty meets the accuracy, and that of the
-    last."""
+    last.
+
+    most : patches a side of the last grid of a contact that is no disc.
+    """
     levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)
     if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
         raise _at_rim(half_width)
@@ -135,7 +147,7 @@ def _refined(
         n = odd(FINER * last.n)
         reached.append(estimate.relative_to(levels[-1].scalars, uncertainty.MOVING))
         largest = LARGE_GRID if uncertainty.is_stalled(accuracy, reached, levels) else LARGEST_GRID
-        if n > (largest if indenter.round else BESIDE):
+        if n > (largest if indenter.round else most):
             break
         grid = replace(last, n=n, d=2 * last.half_width / n)
         try:
@@ -156,7 +168,11 @@ def _at_rim(half_width: float) -> NotConverged:
 def _shaped(
     indenter: Indenter, half_width: float, body: Body, numerics: Numerics, estimate_uncertainty: bool
 ) -> Solution:
-    """Press an indenter over a square ``FILL`` times as wide as its contact, which coarse grids find."""
+    """Press an indenter over a square ``FILL`` times as wide as its contact, which coarse grids find.
+
+    A contact that is more than ``LONG`` times as long as wide has as many times more patches a side; only
+    those of the window around it are used.
+    """
     rough, coarse = replace(indenter, edge_correction=False), replace(numerics, patches=ROUGH, tolerance=1e-4)
     for _ in range(20):
         try:
@@ -165,10 +181,26 @@ def _shaped(
             half_width *= 1.5
             continue
         loaded = np.argwhere(found.patch_pressure > 0)
+        sides = np.ptp(loaded, axis=0) + 1
         extent = float(np.abs(found.nodes[loaded]).max()) + found.diagnostics.patch_size
-        if extent > half_width / 3:
-            return _pressed(indenter, FILL * extent, body, numerics, estimate_uncertainty)
-        half_width = ROOMY * extent
+        if extent <= half_width / 3:
+            half_width = ROOMY * extent
+        elif sides.min() < NARROW and coarse.patches < LARGEST_GRID / FINER:
+            coarse = replace(coarse, patches=odd(2 * coarse.patches))
+        else:
+            ratio = sides.max() / sides.min()
+            more = max(1.0, ratio / LONG)
+            finer = replace(numerics, patches=min(odd(more * numerics.patches), LARGEST_GRID))
+            most = min(int(more * BESIDE), LARGEST_GRID)
+            pressed = _pressed(indenter, FILL * extent, body, finer, estimate_uncertainty, most)
+            across = int(np.ptp(np.argwhere(pressed.patch_pressure > 0), axis=0).min()) + 1
+            if across < RESOLVED:
+                raise NotConverged(
+                    f"the contact is {ratio:.0f} times as long as wide: {across} patches across, at least "
+                    f"{RESOLVED} are needed; raise patches, to {LARGEST_GRID} at most, or take radii that "
+                    "differ less"
+                )
+            return pressed
     raise NotConverged(f"no contact within {half_width:g} m carries the load; check the indenter")
 
 
@@ -262,10 +294,15 @@ def _of_profile(
 
 
 def _pressed(
-    indenter: Indenter, half_width: float, body: Body, numerics: Numerics, estimate_uncertainty: bool
+    indenter: Indenter,
+    half_width: float,
+    body: Body,
+    numerics: Numerics,
+    estimate_uncertainty: bool,
+    most: int = BESIDE,
 ) -> Solution:
     began = time.perf_counter()
-    levels, estimate = _refined(indenter, half_width, body, numerics, estimate_uncertainty)
+    levels, estimate = _refined(indenter, half_width, body, numerics, estimate_uncertainty, most)
     return Solution.of_levels(levels[-3:], body, estimate, began)
 
 
@@ -296,6 +333,7 @@ def solve_prescribed(
         check_finite(pressure=pressure)
         pressure = partial(np.full_like, fill_value=float(pressure))
     shape = prescribed.Prescribed(load_radius, pressure)
+    shape.refuse_inner_jump()
 
     def level(n: int, wider: float, numerics: Numerics) -> Level:
         return _loaded(Grid(odd(wider * n), 2.04 * load_radius / n), shape, body, numerics)

@@ -27,7 +27,9 @@ AT_EDGE, PRESSURE = (8.0, 2.0), 8.0
 COARSE = 24.0
 FALL = 3.0  # of the uncertainty on refining twice, that makes a larger grid worth its time
 SUDDEN = 0.1  # of the ripple, or of the change of the pressure, of the grid before
-PATCHES = 1 / 2  # of the change before, of patches alone, whose edge changes erratically
+PATCHES = (
+    1.0  # of the change before, of patches alone: their edge moves erratically, and no order is observed
+)
 
 
 def safety(ratio: float) -> float:
@@ -68,6 +70,7 @@ class Uncertainty:
         edge: float = 0.0,
         inside: float = 0.0,
         moving: float = 0.0,
+        loaded: float = 0.0,
     ) -> "Uncertainty":
         """From the results on three grids, and the changes by one other parameter that is less accurate.
 
@@ -75,12 +78,14 @@ class Uncertainty:
         the last is small by chance, or ``edge``, the error of the contact radius by patches that the edge
         cuts [m], or ``inside``, that of deflection and pressure there, relative.
         ``moving`` : share of the change before that the contact radius has at least, in a row of its own.
+        ``loaded`` : of the edge, see ``Level.load_at_edge``; 0 of a smooth one.
         """
+        moved = edge / fine["contact_radius"]
         # an error of the edge is of the second order in the approach, which is stationary in the contact's
         # area
         least = {
             "contact_radius": edge,
-            "approach": fine["approach"] * (inside + (edge / fine["contact_radius"]) ** 2),
+            "approach": fine["approach"] * (inside + loaded * moved + moved**2),
             "peak_pressure": fine["peak_pressure"] * inside,
         }
         rows = []
@@ -124,7 +129,16 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
         if body.response is not None and body.response.depth < 2 * last.grid.d:
             edge = max(edge, UNRESOLVED * last.grid.d)
     return Uncertainty.from_levels(
-        fine, middle, coarse, variations, factor=factor, share=share, edge=edge, inside=inside, moving=moving
+        fine,
+        middle,
+        coarse,
+        variations,
+        factor=factor,
+        share=share,
+        edge=edge,
+        inside=inside,
+        moving=moving,
+        loaded=0.0 if last.shape else last.load_at_edge,
     )
 
 

@@ -41,7 +41,7 @@ from verification.problem.line_profile import Line, line_of, lines_of, oblique_l
 from verification.sources.load_of_approach import load_of_approach, own_radius
 from verification.sources.source_registry import METHODS, sources_of
 
-CONTRAST = 1e4  # of moduli over those below, where digits are lost; a ball deforms 1e-4 by it
+CONTRAST = 1e4  # of a layer over those below it, where digits are lost
 SUPPORTED = (1e-3, 1e3)  # thickness over contact radius, by both methods
 CASES = Path(__file__).parent / "shipped" / "contact"
 SHAPES = Path(__file__).parent / "shipped" / "shapes"
@@ -201,7 +201,7 @@ class _Problem(Sized):
         """
         load = self.load
         if load is None:
-            load = load_of_approach(self.approach or 0.0, lambda W: _rigid(self._under(W, over))[0])
+            load = load_of_approach(self.approach or 0.0, lambda W: self._under(W, over))
         return self._under(load, over)
 
     def _under(self, load: float, over: int) -> CoatedContact:
@@ -287,7 +287,6 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
     except (ValueError, OverflowError, ZeroDivisionError) as error:
         raise CaseError(f"{path}: {error}") from None
     refuse_unfit_scales(path, problem, "load" if checked.problem.approach is None else "approach")
-    problem, treated = _rigid(problem)
     if checked.resolve and not problem.coatings:
         raise CaseError(f"{path}: resolve: requires a coating; add one, or leave resolve out")
     numerics = {method: getattr(checked, method).model_dump(exclude_none=True) for method in METHODS}
@@ -304,11 +303,7 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
         numerics,
         text,
         checked.resolve,
-        (
-            *treated,
-            *warnings_of(problem, limits),
-            *residual_warnings(residual, checked.problem.temperature_change),
-        ),
+        (*warnings_of(problem, limits), *residual_warnings(residual, checked.problem.temperature_change)),
         limits,
         residual,
         {body: tuple(c.sublayers(over) for c in coatings) for body, coatings in graded.items()},
@@ -317,16 +312,6 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
         diameter_remark(checked.problem.radius),
         checked.problem.approach,
     )
-
-
-def _rigid(problem: CoatedContact) -> tuple[CoatedContact, tuple[str, ...]]:
-    """The problem with an uncoated ball beyond ``CONTRAST`` as a rigid one, and the warning that says so."""
-    stiffest = max([E for E, _, _ in problem.coatings] + [problem.substrate[0]])
-    if problem.ball is None or problem.ball[2] or problem.ball[0] <= CONTRAST * stiffest:
-        return problem, ()
-    contrast = problem.ball[0] / stiffest
-    told = f"ball.E is {contrast:.2g} times that of the flat, above {CONTRAST:g}"
-    return replace(problem, ball=None), (f"{told}; the ball is treated as rigid",)
 
 
 def refuse_unfit_scales(path: Path, problem: CoatedContact, pressed: str = "load") -> None:

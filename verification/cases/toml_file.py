@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Annotated, Any, TypeVar, get_args
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 Checked = TypeVar("Checked", bound=BaseModel)
 
@@ -45,13 +45,7 @@ class Strict(BaseModel):
 Positive = Annotated[float, Field(gt=0)]
 
 
-def _compressible(nu: float) -> float:
-    if nu == 0.5:
-        raise ValueError("must be below 0.5, where the material is incompressible; use 0.49")
-    return nu
-
-
-Poisson = Annotated[float, Field(gt=-1, le=0.5), AfterValidator(_compressible)]
+Poisson = Annotated[float, Field(gt=-1, le=0.5)]
 Friction = Annotated[float, Field(ge=0, le=2)]
 Text = Annotated[str, Field(min_length=1, max_length=500)]
 

@@ -9,12 +9,13 @@ from math import isclose, isfinite, pi
 from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from verification.problem.array_types import Array, Ball, Coatings
 from verification.problem.indenter_shape import Indenter, require_shape
 
 FLAT, BALL = "flat", "ball"  # the two bodies of a contact
+AT_RIM = 1e-8  # distance from the rim of a prescribed load over its radius, within which a point is on it
 
 
 @dataclass(frozen=True)
@@ -151,6 +152,10 @@ class PrescribedLoad:
         _require_positive("pressure", self.pressure)
         _require_positive("load_radius", self.load_radius)
         _require_solid(self.coatings, self.substrate, self.friction)
+
+    def is_singular(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> NDArray[np.bool_]:
+        """Whether pressure and stress have no value at points [m]: on the rim, where the pressure jumps."""
+        return np.hypot(np.hypot(x, y) - self.load_radius, z) <= AT_RIM * self.load_radius
 
 
 def keywords(problem: Any) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from verification.cases.published_file import PublishedCase
 from verification.cases.published_table import PublishedColumn
@@ -14,11 +14,14 @@ from verification.judging.verdict import Outcome, Verdict, compare, judge
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import (
     CoatedContact,
+    PrescribedLoad,
     Solution,
     relative_to_edge,
     stress_with_uncertainty,
 )
 from verification.problem.line_profile import Profile
+from verification.problem.loading_curve import Problem
+from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import CaseResult, SourceResult, diagnostics_of, message_of
 from verification.sampling.largest_tension import BESIDE
 from verification.sampling.point_values import values
@@ -118,8 +121,14 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
             verdicts.append((claim, Verdict(Outcome.NO_RESULT, f"{source}: {failure}")))
             continue
         mine = profiles[claim.quantity, claim.line, source]
-        verdict = judge(compare(mine, item.reference, scale=item.scale), claim.cap)
-        verdicts.append((claim, replace(verdict, reason=verdict.reason + _departures(item))))
+        left_out = _singular(case.problem, item)
+        comparison = compare(mine, item.reference, scale=item.scale, excluded=left_out)
+        told = _singular_points(item, left_out) + _departures(item)
+        if left_out.all():
+            verdicts.append((claim, Verdict(Outcome.NO_RESULT, f"no point to judge{told}")))
+            continue
+        verdict = judge(comparison, claim.cap)
+        verdicts.append((claim, replace(verdict, reason=verdict.reason + told)))
     return CaseResult.of(
         case,
         sources=tuple(outcomes.values()),
@@ -159,6 +168,23 @@ def _record(item: PublishedColumn) -> dict[str, Any]:
         "counted": item.counted.tolist(),
         "scale": item.scale,
     }
+
+
+def _singular(problem: Problem, item: PublishedColumn) -> NDArray[np.bool_]:
+    """The points at which the quantity of a column has no value."""
+    local = QUANTITIES[item.profile.quantity].kind in ("pressure", "stress", "strain")
+    if not (local and isinstance(problem, PrescribedLoad)):
+        return np.zeros(item.at.x.shape, dtype=bool)
+    return problem.is_singular(item.at.x, item.at.y, item.at.z)
+
+
+def _singular_points(item: PublishedColumn, left_out: NDArray[np.bool_]) -> str:
+    """Message on the singular points of a column, which are not judged; empty where there are none."""
+    if not left_out.any():
+        return ""
+    rows = ", ".join(f"{v:.6g}" for v in np.unique(item.at.along[left_out] / item.at.in_si))
+    what = f"{left_out.sum()} of {left_out.size} values, at {item.at.coordinate} = {rows} {item.at.unit}"
+    return f"; {what}, lie on the rim of the load, where {item.profile.quantity} has no value: not judged"
 
 
 def _departures(item: PublishedColumn) -> str:

@@ -90,7 +90,7 @@ def loading(
 ) -> Loading:
     """The curve by a solver of one contact under a load.
 
-    limits : extrapolate to nu = 1/2 and to a rigid base, see ``limit_extrapolation``.
+    limits : extrapolate to nu = 1/2, see ``limit_extrapolation``.
     """
     states, count = [], 0
 
@@ -108,11 +108,6 @@ def loading(
             states.append(state(contact))
             continue
         (near, U), (further, V) = (state(short_of_limit(contact, t)) for t in (1, 2))
-        if 0.5 not in [contact.substrate[1], *(nu for _, nu, _ in contact.coatings)]:
-            # A base in series with the layer: extrapolation linear in its compliance neglects the square of
-            # its contribution; twice that for both ends of the step.
-            states.append((2 * near - further, 2 * U + V + 2 * (near - further) ** 2 / near))
-            continue
         third, T = state(short_of_limit(contact, 3))
         # Parabola through all three points, with the uncertainty of the straight line through two.
         bend = near - 2 * further + third

@@ -37,7 +37,7 @@ def _shape_by_patches(problem: CoatedContact) -> Any:
 
 
 def solve_elements(problem: Problem, numerics: Mapping[str, Any] | None = None) -> Any:
-    """``problem`` by finite elements, extrapolated where a layer is incompressible or the base rigid."""
+    """``problem`` by finite elements, extrapolated where a layer is incompressible."""
     from verification.sources.limit_extrapolation import extrapolated
 
     if isinstance(problem, CoatedContact) and problem.indenter is not None:

@@ -48,7 +48,7 @@ WRONG = [
     ({"--ball": "10, 210e9, 0.3"}, "mm"),
     ({"--ball": "d = 20, 210e9, 0.3"}, "mm"),
     ({"--ball": "10 mm, 210, 0.3"}, "GPa"),
-    ({"--ball": "10 mm, 210 GPa, 0.5"}, "0.49"),
+    ({"--ball": "10 mm, 210 GPa, 0.51"}, "0.5"),
     ({"--substrate": "210, 0.3"}, "GPa"),
     ({"--substrate": "210000, 0.3"}, "MPa"),
     ({"--substrate": "210 GPa"}, "E, nu"),
@@ -59,7 +59,6 @@ WRONG = [
     ({"--coating": "0.002, 180e9, 0.2"}, "mm"),
     ({"--coating": "20 mm, 180 GPa, 0.2"}, "--force"),
     ({"--coating": "2 um, 180 GPa"}, "thickness, E, nu"),
-    ({"--coating": "2 um, 900 GPa, 0.2", "--substrate": "50 MPa, 0.3"}, "lower its modulus"),
     ({"--coating": "1 nm, 180 GPa, 0.2"}, "0.109 um"),
     ({"--plot": "missing/stress.png"}, "create"),
     ({"--plot": "stress.gif"}, ".png"),
@@ -212,10 +211,10 @@ def test_implausible_numbers_are_solved_with_force_and_a_warning(tmp_path):
     assert "radius = 2 m" in done.stderr
 
 
-def test_a_ball_far_stiffer_than_the_flat_is_rigid(tmp_path):
-    words = ["solve", "--load", "1 mN", "--substrate", "2 MPa, 0.49", "--friction", "0.1", "--ball"]
-    elastic = coatcheck(*words, "10 mm, 210 GPa, 0.3", cwd=tmp_path)
-    assert (elastic.returncode, elastic.stderr.count("rigid")) == (0, 1)
+def test_a_stiff_ball_on_a_soft_incompressible_flat_is_solved_as_stated(tmp_path):
+    words = ["solve", "--load", "1 mN", "--substrate", "2 MPa, 0.5", "--friction", "0.1", "--ball"]
+    done = coatcheck(*words, "10 mm, 210 GPa, 0.3", cwd=tmp_path)
+    assert (done.returncode, done.stderr.count("rigid")) == (0, 0)
 
 
 def test_an_indenter_that_is_no_ball_is_refused_by_solve(tmp_path):

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipkm1, j1
 
 from verification.problem.array_types import Array, Coatings
-from verification.problem.coated_contact import Uncertainty
+from verification.problem.coated_contact import PrescribedLoad, Uncertainty
 from verification.sources.references.hankel_field import HankelField
 
 
@@ -51,6 +51,7 @@ class UniformDisc:
 class DiscSolution:
     """Stresses and displacements; the difference from ``coarser`` gives the uncertainty."""
 
+    problem: PrescribedLoad
     disc: UniformDisc
     field: HankelField
     coarser: HankelField
@@ -87,12 +88,18 @@ class DiscSolution:
         return 2 * self.disc.a * np.linspace(-1, 1, 401)
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """p [Pa]."""
-        return self.disc.pressure(np.hypot(x, y))
+        """p [Pa], NaN on the rim, where it jumps."""
+        return self._regular(self.disc.pressure(np.hypot(x, y)), x, y, 0.0)
 
     def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        """sigma[i, j, ...] [Pa]; ``layer`` picks the side of an interface, the upper one unless given."""
-        return self.field.stress(x, y, z, layer)
+        """sigma[i, j, ...] [Pa]; ``layer`` picks the side of an interface, the upper one unless given.
+
+        NaN on the rim, where it depends on the direction of approach.
+        """
+        return self._regular(self.field.stress(x, y, z, layer), x, y, z)
+
+    def _regular(self, value: Array, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        return np.where(self.problem.is_singular(x, y, z), np.nan, value)
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """u[i, ...] [m] towards infinity."""
@@ -100,7 +107,7 @@ class DiscSolution:
 
     def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """0: the pressure is given."""
-        return np.zeros(np.broadcast(x, y).shape)
+        return self._regular(np.zeros(np.broadcast(x, y).shape), x, y, 0.0)
 
     def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """Absolute [Pa], shape (3, 3) + points."""
@@ -129,6 +136,7 @@ def solve_prescribed(
     """
     if friction:
         raise ValueError(f"friction = {friction:g}; a sliding disc has infinite stress at its rim")
+    problem = PrescribedLoad(pressure, load_radius, coatings, substrate)
     disc = UniformDisc(load_radius, pressure)
     fine = HankelField(disc, coatings, substrate, 0.0, nodes, tail)
-    return DiscSolution(disc, fine, replace(fine, nodes=3 * nodes // 4, tail=0.75 * tail))
+    return DiscSolution(problem, disc, fine, replace(fine, nodes=3 * nodes // 4, tail=0.75 * tail))
