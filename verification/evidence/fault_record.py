@@ -109,7 +109,7 @@ class Row:
 
 @dataclass(frozen=True)
 class Record:
-    """All trials of one run of ``coatcheck faults``, with provenance.
+    """All trials of one run of ``python tests/tools faults``, with provenance.
 
     controls : trials in which nothing was planted.   failing_clean : checks that do not pass without a fault
     either, so that no trial counts them.   seconds : elapsed; core_seconds : of all trials.
@@ -194,7 +194,7 @@ _FILE = RecordFile(
     "faults.json",
     ("coatcheck-faults/2",),
     "planted faults",
-    "run coatcheck faults again",
+    "try the faults again",
     lambda record: {"score": record.score},
 )
 to_json, write_record, read_record = _FILE.to_json, _FILE.write, _FILE.read

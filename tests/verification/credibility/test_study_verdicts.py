@@ -6,13 +6,13 @@ from functools import partial
 from types import SimpleNamespace
 
 import pytest
+from faults_planted.fault_anchor import Change
+from faults_planted.fault_catalogue import FAULTS
+from faults_planted.fault_planting import planted
 from synthetic_study import study
 
 from verification.credibility import accuracy_study
 from verification.credibility.exact_errors import FILMS, HERTZ, ExactError
-from verification.credibility.faults.fault_anchor import Change
-from verification.credibility.faults.fault_catalogue import FAULTS
-from verification.credibility.faults.fault_planting import planted
 from verification.credibility.refinement_studies import Level, Refinement
 from verification.credibility.study_verdicts import STAIRCASE, verdicts
 from verification.judging.outcome import Outcome

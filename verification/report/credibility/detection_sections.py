@@ -4,17 +4,10 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from verification.credibility.faults.first_notice import (
-    Noticed,
-    kinds,
-    method_score,
-    noticed,
-    of_method,
-    unused,
-)
 from verification.credibility.self_tests import SelfTest
 from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record
 from verification.evidence.fault_record import Row as Fault
+from verification.evidence.first_notice import Noticed, kinds, method_score, noticed, of_method, unused
 from verification.page.number_text import plain, scientific, seconds
 from verification.page.page_parts import Cell, Part, Section, Table, Value, row, table_of, words
 from verification.page.source_labels import source_label

@@ -14,7 +14,7 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
-from verification.credibility.faults.fault_anchor import Change, PlantError, definition, edited
+from faults_planted.fault_anchor import Change, PlantError, definition, edited
 from verification.sources.source_registry import METHODS, SOURCES
 
 PACKAGES = (*(SOURCES[name].package for name in METHODS), "verification")

@@ -8,15 +8,15 @@ from dataclasses import replace
 from importlib import import_module
 
 import pytest
+from faults_planted.fault_anchor import Change, PlantError, definition, edited
+from faults_planted.fault_campaign import record_of, row_of
+from faults_planted.fault_catalogue import CONTROLS, FAULTS, LISTS
+from faults_planted.fault_planting import Fault, owner_of, planted
+from faults_planted.fault_trial import Check, Trial, clean_path, try_fault
+from faults_planted.faults import faults
 from synthetic_results import INFO
 
 from verification.cases.case_file import default_cases, read_case, shipped_cases
-from verification.commands.credibility.faults import faults
-from verification.credibility.faults.fault_anchor import Change, PlantError, definition, edited
-from verification.credibility.faults.fault_campaign import record_of, row_of
-from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS, LISTS
-from verification.credibility.faults.fault_planting import Fault, owner_of, planted
-from verification.credibility.faults.fault_trial import Check, Trial, clean_path, try_fault
 from verification.evidence.fault_record import Catch, Record, read_record, to_json, write_record
 from verification.judging.verdict import Outcome
 from verification.running import contact_run as running

@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from faults_planted.fault_planting import Fault, planted
 from verification.cases.case_file import Case, default_cases, read_case
 from verification.cases.published_file import PublishedCase, published_cases, read_published
 from verification.cases.published_table import PublishedColumn
 from verification.credibility import accuracy_study
-from verification.credibility.faults.fault_planting import Fault, planted
 from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.invariants import check as invariants_of
