@@ -11,7 +11,15 @@ from faults_planted.fault_catalogue import CONTROLS, FAULTS
 from faults_planted.fault_planting import Fault
 from faults_planted.fault_trial import Check, Trial, try_fault
 from verification.cases.case_file import Case, default_cases, read_case
-from verification.evidence.fault_record import CAUGHT, COLUMNS, EQUIVALENT_CHANGE, Catch, Record, Row, Tally
+from verification.evidence.fault_record import (
+    CAUGHT,
+    COLUMNS,
+    EQUIVALENT_CHANGE,
+    Catch,
+    FaultRow,
+    Record,
+    Tally,
+)
 from verification.judging.verdict import Outcome
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.checked_files import StoreError, read_checked, write_checked
@@ -85,14 +93,14 @@ def record_of(trials: Sequence[Trial], info: RunInfo) -> Record:
     )
 
 
-def row_of(fault: Fault, trial: Trial) -> Row:
+def row_of(fault: Fault, trial: Trial) -> FaultRow:
     """The row of one trial: its checks counted column by column."""
     by_column = {column: [c for c in trial.checks if c.column == column] for column in COLUMNS}
     bad = [check for check in trial.checks if not check.passed]
     decided = [c for c in bad if c.outcome is not Outcome.NO_RESULT]
     predicted = [c for c in decided if c.name in fault.predicted]
     catch = _catch(bad, fault, trial)
-    return Row(
+    return FaultRow(
         fault.name,
         fault.group,
         fault.description,

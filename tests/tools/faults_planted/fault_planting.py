@@ -17,7 +17,8 @@ from typing import Any
 from faults_planted.fault_anchor import Change, PlantError, definition, edited
 from verification.sources.source_registry import METHODS, SOURCES
 
-PACKAGES = (*(SOURCES[name].package for name in METHODS), "verification")
+# Where names are replaced; those of the trials too, which import what they judge with.
+PACKAGES = (*(SOURCES[name].package for name in METHODS), "verification", "faults_planted")
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ from importlib import import_module
 from pathlib import Path
 
 import pytest
+from faults_planted import fault_trial
 from faults_planted.fault_anchor import Change, PlantError, definition, edited
 from faults_planted.fault_campaign import record_of, row_of
 from faults_planted.fault_catalogue import CONTROLS, FAULTS, LISTS
@@ -107,6 +108,13 @@ def test_a_function_imported_by_name_is_exchanged_there_too():
         assert loading.constrained_solve is linear_system.constrained_solve
         assert "planted" in loading.constrained_solve.__code__.co_filename
     assert "planted" not in loading.constrained_solve.__code__.co_filename
+
+
+def test_what_a_trial_samples_with_has_the_fault_too():
+    original = fault_trial.sample_contact
+    with planted(FAULTS["relative_for_absolute"].changes):
+        assert fault_trial.sample_contact is not original
+    assert fault_trial.sample_contact is original
 
 
 def test_two_edits_of_one_function_both_take():

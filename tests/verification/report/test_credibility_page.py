@@ -11,7 +11,7 @@ from synthetic_study import study
 from verification.credibility.model_error import Cost, ModelError
 from verification.evidence import alarm_record, code_record
 from verification.evidence.enclosure_record import SHIPPED
-from verification.evidence.fault_record import Catch, Record, Row, write_record
+from verification.evidence.fault_record import Catch, FaultRow, Record, write_record
 from verification.guests.pages import guests_section
 from verification.page.page_parts import Part, Section
 from verification.problem.quantity import SCALARS, SLOPES
@@ -83,9 +83,9 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
 
 
 def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
-    def row(name: str, catch: Catch, **more: str) -> Row:
+    def row(name: str, catch: Catch, **more: str) -> FaultRow:
         named = catch is Catch.DISAGREES
-        return Row(
+        return FaultRow(
             name, "frf", f"{name} is wrong", "semianalytic", catch, named, "", {}, 1.0, "", 2.0, (), **more
         )
 

@@ -180,7 +180,9 @@ def section(material: Material, coverage: Table) -> Section | None:
         Part("", [_alarm_table(evidence.alarms)], folded="Verdicts of clean problems that are not AGREES"),
     ]
     if evidence.faults is None:
-        parts.append(Part(NO_RECORD.format("planted faults", "python tests/tools faults"), title="Planted faults"))
+        parts.append(
+            Part(NO_RECORD.format("planted faults", "python tests/tools faults"), title="Planted faults")
+        )
     return Section("credibility", "Credibility", parts, evidence.failures)
 
 
