@@ -151,7 +151,9 @@ def test_a_record_is_older_than_the_code_only_where_that_has_changed_since(tmp_p
 
 def test_an_old_record_is_marked_on_its_page_and_on_the_first(evidence):
     for older in ((), ("faults",)):
-        one = Row("f", "frf", "f is wrong", "semianalytic", Catch.DISAGREES, True, "", {}, 1.0, "", 2.0, ())
+        one = FaultRow(
+            "f", "frf", "f is wrong", "semianalytic", Catch.DISAGREES, True, "", {}, 1.0, "", 2.0, ()
+        )
         record = replace(EMPTY, rows=(one,))
         text = render(Material(RESULTS, INFO, replace(evidence, faults=record, older=older)))
         assert text.count(" older ") == (2 if older else 0)
