@@ -194,7 +194,8 @@ def test_what_both_methods_share_is_read_from_their_source(evidence, tmp_path, m
     ellipse = replace(RESULTS[0], problem={**RESULTS[0].problem, "indenter": ("ellipsoid", (1.0, 2.0))})
     assert "patches" in dict(first_page.shared(Material([ellipse], INFO, evidence)))["start values"]
     both = (replace(first, functions=("scipy.special.j0",)), replace(second, functions=("scipy.special.j0",)))
-    wrong = replace(evidence, parts=(*both, replace(first, forbidden=("a imports b",))))
+    parts = (*both, replace(first, forbidden=("a imports b",)))
+    wrong = replace(evidence, code=replace(evidence.code, parts=parts))
     said = dict(first_page.shared(Material(RESULTS, INFO, wrong)))
     assert (said["code"], said["special functions"]) == ("a imports b", "scipy.special.j0")
 
