@@ -39,7 +39,7 @@ from .recovery import TRACTIONS, HarmonicField
 from .scaling import Units
 from .state import ElasticState
 
-# Roache's factor of safety for two meshes; `coatcheck alarms` counts how often it is too small.
+# Roache's factor of safety for two meshes; `python tests/tools alarms` counts how often it is too small.
 SAFETY = 3.0
 # Likewise of the largest difference of a stress around a point: 2.4 was needed in one of 100 random problems.
 OF_STRESS = 2.6

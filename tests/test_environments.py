@@ -24,10 +24,6 @@ EXTRAS = re.compile(r"pip install .*?-e '?\.(?:\[([\w,]+)\])?'?")
 QUICK = {
     r"run$": "run 01_uncoated_steel",
     r"run published$": "run ahlvin_ulery_1962",
-    r"faults$": "faults --list",
-    r"alarms$": "alarms --count 1",
-    r"certify$": "certify --help",
-    r"assumptions$": "assumptions --help",
     r"(study \w+).*": r"\1 --help",
     r"completion .*": "completion bash",
 }

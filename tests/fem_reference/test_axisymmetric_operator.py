@@ -4,12 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from skfem import Basis, BilinearForm, ElementVector
-from skfem.helpers import ddot, sym_grad, trace
-
-from fem_reference.axisymmetric import ELEMENTS, Discretisation, strain_operator
-from fem_reference.linear_system import constrained_solve
-from verification.credibility.manufactured_solutions import (
+from code_checked.manufactured_solutions import (
     MATERIALS,
     boundary,
     design_orders,
@@ -17,6 +12,11 @@ from verification.credibility.manufactured_solutions import (
     shear,
     unit_square,
 )
+from skfem import Basis, BilinearForm, ElementVector
+from skfem.helpers import ddot, sym_grad, trace
+
+from fem_reference.axisymmetric import ELEMENTS, Discretisation, strain_operator
+from fem_reference.linear_system import constrained_solve
 
 
 def lame(E, nu):

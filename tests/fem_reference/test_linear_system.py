@@ -4,11 +4,11 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
+from code_checked.manufactured_solutions import MATERIALS, unit_square
 
 from fem_reference import linear_system, solve
 from fem_reference.axisymmetric import Discretisation
 from fem_reference.linear_system import constrained_solve
-from verification.credibility.manufactured_solutions import MATERIALS, unit_square
 
 
 def problem(harmonic, order=3):

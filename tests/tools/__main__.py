@@ -16,6 +16,10 @@ app.command("open_digits_made.making:vectors")
 app.command("assumption_maps_made.measuring:assumptions")
 app.command("result_picture:picture")
 app.command("lobes_picture:lobes")
+app.command("faults_planted.faults:faults")
+app.command("alarms:alarms")
+app.command("enclosures_made.certify:certify")
+app.command("code_checked.checking:code")
 
 if __name__ == "__main__":
     sys.exit(app(result_action="return_value"))

@@ -10,11 +10,8 @@ import pytest
 def _measured_once():
     """Each of these has tests of its own, which call it by its own name."""
     from verification.commands import report, run
-    from verification.report import report_material
 
     with (
-        mock.patch.object(report_material, "design_orders", cache(report_material.design_orders)),
-        mock.patch.object(report_material, "parts", cache(report_material.parts)),
         mock.patch.object(run, "self_tests", cache(run.self_tests)),
         mock.patch.object(report, "self_tests", cache(report.self_tests)),
     ):

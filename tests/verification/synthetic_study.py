@@ -1,7 +1,7 @@
 """A study of accuracy made up from power laws, for tests of the report."""
 
 from verification.credibility.accuracy_study import CORRECTED, PLAIN, STAIRCASE, AccuracyStudy
-from verification.credibility.refinement_studies import QUANTITIES, Level, Refinement
+from verification.credibility.refinement_studies import QUANTITIES, Refinement, RefinementLevel
 from verification.judging.invariants.influence_error import ConversionError
 
 PATCHES = (33, 65, 129, 257)
@@ -10,7 +10,7 @@ PATCHES = (33, 65, 129, 257)
 def falling(setting: str, order: float, floor: float = 0.0, solid: str = "coated") -> Refinement:
     """Errors of N^-order, no smaller than ``floor``, in every quantity."""
     levels = tuple(
-        Level(f"N = {n}", float(n), 0.01 * n, dict.fromkeys(QUANTITIES, max(float(n) ** -order, floor)))
+        RefinementLevel(f"N = {n}", float(n), 0.01 * n, dict.fromkeys(QUANTITIES, max(n**-order, floor)))
         for n in PATCHES
     )
     return Refinement("semianalytic", solid, setting, levels)
@@ -19,7 +19,7 @@ def falling(setting: str, order: float, floor: float = 0.0, solid: str = "coated
 def elements(order: int) -> Refinement:
     """Finite elements that converge as their order says."""
     levels = tuple(
-        Level(name, size, 1.0, dict.fromkeys(QUANTITIES, size**-order))
+        RefinementLevel(name, size, 1.0, dict.fromkeys(QUANTITIES, size**-order))
         for name, size in (("fast", 100.0), ("default", 200.0))
     )
     return Refinement("fem_reference", "coated", f"order {order}", levels)

@@ -20,7 +20,6 @@ from verification.credibility.refinement_studies import Refinement, refined_grid
 from verification.credibility.study_verdicts import CORRECTED, PLAIN, STAIRCASE, verdicts
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.invariants.influence_error import ConversionError, conversion_errors
-from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import CoatedContact
 from verification.running.case_result import message_of
 from verification.running.checked_files import write_checked
@@ -109,35 +108,6 @@ def discs_of() -> tuple[ExactError, ...]:
     """Given pressures on both solids, Hertz's sliding on the coated one; DC-FFT; one patch of thin films."""
     found = disc_errors(COATED, "coated", FRICTION) + disc_errors(BARE, "uncoated", 0.0)
     return (*found, *convolution_errors(COATED, "coated"), *film_errors(COATED))
-
-
-def quick() -> tuple[Invariant, ...]:
-    """The verdicts of a shorter study, part by part up to the first that disagrees: fewer grids.
-
-    For trials of planted faults: whatever fails is a verdict without a result.
-    """
-    grid = partial(refined_grid, solve=solvers(COATED)["semianalytic"])
-    parts: tuple[Callable[[], tuple[Invariant, ...]], ...] = (
-        lambda: verdicts(errors=discs_of()),
-        lambda: verdicts([grid(COATED, (129,), solid="coated", setting=CORRECTED)]),
-        lambda: verdicts([grid(FILM, (129,), solid="compliant film", setting=CORRECTED)]),
-        lambda: verdicts(
-            [grid(COATED, (33, 65, 129), solid="coated", setting=STAIRCASE, edge_correction=False)]
-        ),
-        lambda: verdicts(errors=turned_ellipse(BARE, "approach")),
-        lambda: verdicts(errors=turned_ellipse(BARE, "load")),
-        lambda: verdicts(errors=iteration_counts(COATED, "coated")),
-        lambda: verdicts(errors=grid_ratios(COATED, "coated")),
-    )
-    found: list[Invariant] = []
-    for part in parts:
-        try:
-            found += part()
-        except Exception as error:
-            found += verdicts(failures=[f"discs and ellipses: {message_of(error)}"])
-        if any(row.outcome is Outcome.DISAGREES for row in found):
-            break
-    return tuple(found)
 
 
 def failed(reason: str, seconds: float) -> AccuracyStudy:

@@ -28,7 +28,7 @@ SPAN = 1.9
 
 
 @dataclass(frozen=True)
-class Level:
+class RefinementLevel:
     """One solution: its ``resolution``, its time [s], its error by quantity.
 
     resolution : patches a side, or the square root of the degrees of freedom of finite elements.
@@ -51,7 +51,7 @@ class Refinement:
     method: str
     solid: str
     setting: str
-    levels: tuple[Level, ...] = ()
+    levels: tuple[RefinementLevel, ...] = ()
     failure: str | None = None
 
     def order(self, quantity: str) -> float | None:
@@ -153,7 +153,7 @@ def refined_mesh(
 def _refined(
     empty: Refinement, problem: CoatedContact, solve: Callable[..., Any], steps: Mapping[str, dict[str, Any]]
 ) -> Refinement:
-    levels: list[Level] = []
+    levels: list[RefinementLevel] = []
     failure = None
     without = {"estimate_uncertainty": False}
     try:
@@ -163,7 +163,7 @@ def _refined(
             found = solve(problem, numerics | without)
             seconds = time.perf_counter() - begin
             resolution = float(numerics.get("patches") or np.sqrt(found.diagnostics.dofs))
-            levels.append(Level(name, resolution, seconds, errors(found)))
+            levels.append(RefinementLevel(name, resolution, seconds, errors(found)))
     except Exception as error:  # a message of the report, not a traceback
         failure = f"{[*steps][len(levels)]}: {message_of(error)}"
     return replace(empty, levels=tuple(levels), failure=failure)

@@ -88,7 +88,7 @@ WORDS = {
 
 
 @dataclass(frozen=True)
-class Axis:
+class MapAxis:
     """Values of the coordinate ``name``, ascending; ``rates`` as of Assumption, of each quantity."""
 
     name: str
@@ -125,7 +125,7 @@ class AssumptionMap:
     assumption: str
     title: str
     quantities: tuple[str, ...]
-    axes: tuple[Axis, ...]
+    axes: tuple[MapAxis, ...]
     independent_of: tuple[str, ...]
     change: Array
     uncertainty: Array
@@ -239,7 +239,7 @@ class AssumptionMap:
         return total
 
     @staticmethod
-    def _scale(axis: Axis, value: float) -> Array:
+    def _scale(axis: MapAxis, value: float) -> Array:
         return np.array([value**rate if rate else 1.0 for rate in axis.rates])
 
 
@@ -255,7 +255,7 @@ class AssumptionMaps:
 
 
 def interpolated(
-    table: Array, axes: Sequence[Axis], positions: Sequence[float], below: Sequence[bool], most: int
+    table: Array, axes: Sequence[MapAxis], positions: Sequence[float], below: Sequence[bool], most: int
 ) -> tuple[Array, Array]:
     """Values of ``table`` (quantities, *axes) at ``positions``, each with an estimate of its error.
 

@@ -1,6 +1,6 @@
 """Proven enclosures as the package holds them.
 
-``coatcheck certify`` makes them by ``verification.sources.enclosures``; reading needs no ball arithmetic.
+``python tests/tools certify`` of a checkout makes them; reading needs no ball arithmetic.
 """
 
 from dataclasses import dataclass

@@ -71,7 +71,7 @@ class Tally:
 
 
 @dataclass(frozen=True)
-class Row:
+class FaultRow:
     """One fault with the outcomes of its checks, column by column.
 
     as_predicted : True where a check that was predicted caught it.   by : message of the check that did.
@@ -109,14 +109,14 @@ class Row:
 
 @dataclass(frozen=True)
 class Record:
-    """All trials of one run of ``coatcheck faults``, with provenance.
+    """All trials of one run of ``python tests/tools faults``, with provenance.
 
     controls : trials in which nothing was planted.   failing_clean : checks that do not pass without a fault
     either, so that no trial counts them.   seconds : elapsed; core_seconds : of all trials.
     """
 
-    rows: tuple[Row, ...]
-    controls: tuple[Row, ...]
+    rows: tuple[FaultRow, ...]
+    controls: tuple[FaultRow, ...]
     started: str
     seconds: float
     core_seconds: float
@@ -134,7 +134,7 @@ class Record:
         return sum(row.as_predicted for row in self.rows)
 
     @property
-    def tried(self) -> tuple[Row, ...]:
+    def tried(self) -> tuple[FaultRow, ...]:
         """Faults whose trial ended; the others detect nothing, but no check has passed them either."""
         return tuple(row for row in self.rows if row.catch is not Catch.NOT_TRIED)
 
@@ -144,16 +144,16 @@ class Record:
         return self.caught / len(self.tried) if self.tried else 1.0
 
     @property
-    def survivors(self) -> tuple[Row, ...]:
+    def survivors(self) -> tuple[FaultRow, ...]:
         return tuple(row for row in self.tried if not row.caught)
 
     @property
-    def unexplained(self) -> tuple[Row, ...]:
+    def unexplained(self) -> tuple[FaultRow, ...]:
         """Survivors without a reason on record."""
         return tuple(row for row in self.survivors if not (row.reason and (row.remedy or row.equivalent)))
 
     @property
-    def idle(self) -> tuple[Row, ...]:
+    def idle(self) -> tuple[FaultRow, ...]:
         """Faults that survive or that a comparison reports though no compared number changed."""
         # invariants and published values have numbers of their own, which a fault may change alone
         return tuple(
@@ -164,7 +164,7 @@ class Record:
         )
 
     @property
-    def alarms(self) -> tuple[Row, ...]:
+    def alarms(self) -> tuple[FaultRow, ...]:
         """Controls in which a check failed."""
         return tuple(row for row in self.controls if row.catch is not Catch.SURVIVED)
 
@@ -194,7 +194,7 @@ _FILE = RecordFile(
     "faults.json",
     ("coatcheck-faults/2",),
     "planted faults",
-    "run coatcheck faults again",
+    "try the faults again",
     lambda record: {"score": record.score},
 )
 to_json, write_record, read_record = _FILE.to_json, _FILE.write, _FILE.read

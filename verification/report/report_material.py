@@ -12,13 +12,12 @@ from typing import Any, TypeVar
 from verification.cases.case_file import Case
 from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
-from verification.credibility.import_independence import Part, parts
-from verification.credibility.manufactured_solutions import DesignOrder, design_orders
 from verification.credibility.model_error import ModelError, judged_quantities, model_error
 from verification.credibility.self_tests import SelfTest
-from verification.evidence import alarm_record, enclosure_record
+from verification.evidence import alarm_record, code_record, enclosure_record
 from verification.evidence.alarm_record import AlarmRecord
 from verification.evidence.assumption_maps import AssumptionMaps, read_maps
+from verification.evidence.code_record import CodeRecord, DesignOrder, Imports
 from verification.evidence.enclosure_record import EnclosureRecord
 from verification.evidence.fault_record import Record, read_record
 from verification.problem.coated_contact import CoatedContact
@@ -36,9 +35,10 @@ _METHODS = ("semianalytic", "fem_reference", "verification/sources")
 _HARNESS = ("verification/judging", "verification/sampling")
 # The code that each record judges.
 JUDGED = {
-    "faults": (*_METHODS, *_HARNESS, "verification/credibility/faults"),
+    "code": _METHODS,
+    "faults": (*_METHODS, *_HARNESS, "tests/tools/faults_planted"),
     "alarms": (*_METHODS, *_HARNESS),
-    "enclosures": ("verification/sources/enclosures", "verification/sources/references"),
+    "enclosures": ("tests/tools/enclosures_made", "verification/sources/references"),
     "maps": ("verification/sources/assumptions",),
 }
 
@@ -53,8 +53,7 @@ def made_with(maps: AssumptionMaps) -> tuple[str, str | None]:
 class Evidence:
     """What a report shows beside the results; None or () for what is missing, see ``failures``.
 
-    orders, parts : manufactured solutions and imports, measured.
-    faults, alarms, enclosures : read from records.
+    code, faults, alarms, enclosures : read from records.
     accuracy : errors of the methods over resolution.
     baseline : the change of each number since the baseline.
     maps : what the assumptions of the model cost.   models : the same of each case, by its name.
@@ -62,8 +61,7 @@ class Evidence:
     beyond : by case, a line for each assumption that costs too much of what the case judges.
     """
 
-    orders: tuple[DesignOrder, ...] = ()
-    parts: tuple[Part, ...] = ()
+    code: CodeRecord | None = None
     faults: Record | None = None
     alarms: AlarmRecord | None = None
     failures: tuple[str, ...] = ()
@@ -75,6 +73,16 @@ class Evidence:
     older: tuple[str, ...] = ()
     models: Mapping[str, ModelError] = field(default_factory=dict)
     beyond: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    @property
+    def orders(self) -> tuple[DesignOrder, ...]:
+        """Orders of the finite element operator."""
+        return self.code.orders if self.code else ()
+
+    @property
+    def parts(self) -> tuple[Imports, ...]:
+        """Imports of both methods, then of the references."""
+        return self.code.parts if self.code else ()
 
 
 @dataclass(frozen=True)
@@ -94,7 +102,7 @@ class Modelled:
 def gather(
     records: Path, contacts: Mapping[str, Modelled] | None = None, self_tests: Sequence[SelfTest] = ()
 ) -> Evidence:
-    """Evidence that no result changes: measured, read from the directory ``records``, or modelled.
+    """Evidence that no result changes: read from the directory ``records``, or modelled.
 
     contacts : the contacts of the run by the name of their case, of which the error of the model is found.
     """
@@ -114,17 +122,18 @@ def gather(
         name: attempt(f"error of the model, {name}", partial(model_error, one.problem, maps), ModelError(()))
         for name, one in found.items()
     }
+    code = attempt("checks of the code", lambda: code_record.read_record(records), None)
     faults = attempt("planted faults", lambda: read_record(records), None)
     alarms = attempt("false alarms", lambda: alarm_record.read_record(records), None)
     made = {
+        "code": code.commit if code else None,
         "faults": faults.commit if faults else None,
         "alarms": alarms.commit if alarms else None,
         "enclosures": enclosures.commit if enclosures else None,
         "maps": made_with(maps)[1] if maps and maps.maps else None,
     }
     return Evidence(
-        attempt("manufactured solutions", design_orders, ()),
-        attempt("imports", parts, ()),
+        code,
         faults,
         alarms,
         tuple(failures),

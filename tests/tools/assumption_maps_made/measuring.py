@@ -19,7 +19,7 @@ from verification.evidence.assumption_maps import (
     WORDS,
     AssumptionMap,
     AssumptionMaps,
-    Axis,
+    MapAxis,
     Place,
     read_maps,
     write_maps,
@@ -99,7 +99,7 @@ def _rounded(change: Change) -> tuple[float, ...]:
 def assembled(assumption: str, measured: Sequence[Measured], info: RunInfo) -> AssumptionMap:
     """The map of ``assumption`` from what was ``measured`` at its places, in their order."""
     stated = MEASURED[assumption]
-    axes = tuple(Axis(name, values, stated.rates_of(name)) for name, values in stated.all_axes.items())
+    axes = tuple(MapAxis(name, values, stated.rates_of(name)) for name, values in stated.all_axes.items())
     shape = (*(len(axis.values) for axis in axes), len(QUANTITIES))
     change, uncertainty = (
         np.moveaxis(np.array([getattr(one, name) for one in measured]).reshape(shape), -1, 0)

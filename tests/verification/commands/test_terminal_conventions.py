@@ -117,8 +117,6 @@ def test_names_are_whole_in_a_terminal(stored, screen, width):
         ("run 05_ratio4", "05_ratio_4"),
         ("run Publishd", "published"),
         ("run hertz", "hertz_1882"),
-        ("faults kapsign", "kap_sign"),
-        ("faults --group stres", "stress"),
         ("study thickness silver_on_stel", "silver_on_steel"),
         ("report rum", "run"),
         ("compare run rum", "run"),

@@ -1,11 +1,11 @@
 """The harness answers what is known of it, and a run says so when it does not."""
 
 import pytest
+from faults_planted.fault_catalogue import FAULTS
+from faults_planted.fault_planting import planted
 from synthetic_results import contact, result_of
 
 from verification.credibility import self_tests as room
-from verification.credibility.faults.fault_catalogue import FAULTS
-from verification.credibility.faults.fault_planting import planted
 from verification.credibility.self_tests import self_tests
 from verification.judging.verdict import Outcome
 from verification.regression.baseline_change import Regression

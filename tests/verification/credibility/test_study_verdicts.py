@@ -6,14 +6,15 @@ from functools import partial
 from types import SimpleNamespace
 
 import pytest
+from faults_planted import short_study
+from faults_planted.fault_anchor import Change
+from faults_planted.fault_catalogue import FAULTS
+from faults_planted.fault_planting import planted
 from synthetic_study import study
 
 from verification.credibility import accuracy_study
 from verification.credibility.exact_errors import FILMS, HERTZ, ExactError
-from verification.credibility.faults.fault_anchor import Change
-from verification.credibility.faults.fault_catalogue import FAULTS
-from verification.credibility.faults.fault_planting import planted
-from verification.credibility.refinement_studies import Level, Refinement
+from verification.credibility.refinement_studies import Refinement, RefinementLevel
 from verification.credibility.study_verdicts import STAIRCASE, verdicts
 from verification.judging.outcome import Outcome
 from verification.regression.run_exit_codes import run_code
@@ -41,7 +42,7 @@ SLIPS = (
 def staircase(last=FINE):
     """A staircase study of second order, of first order in the pressure."""
     levels = [
-        Level(
+        RefinementLevel(
             f"N = {n}",
             float(n),
             1.0,
@@ -50,13 +51,13 @@ def staircase(last=FINE):
         for n in (33, 65, 129)
     ]
     return Refinement(
-        "semianalytic", "coated", STAIRCASE, (*levels, Level("N = 257", 257.0, 1.0, dict(last)))
+        "semianalytic", "coated", STAIRCASE, (*levels, RefinementLevel("N = 257", 257.0, 1.0, dict(last)))
     )
 
 
 @pytest.fixture(scope="module")
 def clean():
-    return accuracy_study.quick()
+    return short_study.quick()
 
 
 def test_every_part_meets_its_limit(clean):
@@ -93,7 +94,7 @@ def test_every_part_meets_its_limit(clean):
 )
 def test_a_spoiled_part_does_not(edit, part):
     with planted((edit,)):
-        bad = [row.name for row in accuracy_study.quick() if row.outcome is Outcome.DISAGREES]
+        bad = [row.name for row in short_study.quick() if row.outcome is Outcome.DISAGREES]
     assert any(name.endswith(part) for name in bad), bad
 
 
@@ -108,14 +109,14 @@ def test_a_spoiled_part_does_not(edit, part):
 )
 def test_the_edge_of_a_film_the_iterations_and_the_grids_are_judged(fault, part):
     with planted(FAULTS[fault].changes):
-        assert part in [row.name for row in accuracy_study.quick() if row.outcome is Outcome.DISAGREES]
+        assert part in [row.name for row in short_study.quick() if row.outcome is Outcome.DISAGREES]
 
 
 def test_a_dozen_plausible_slips_at_once_exit_with_1():
     with ExitStack() as stack:
         for name in SLIPS:
             stack.enter_context(planted(FAULTS[name].changes))
-        studies = [row.outcome for row in accuracy_study.quick()]
+        studies = [row.outcome for row in short_study.quick()]
     assert run_code([AGREEING], SAME, passed=True, studies=studies) == 1
 
 

@@ -7,11 +7,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from faults_planted.fault_catalogue import FAULTS
+from faults_planted.fault_planting import planted
 
 from verification.cases.case_file import read_case, shipped_cases
 from verification.commands.common.known_folders import RECORDS
-from verification.credibility.faults.fault_catalogue import FAULTS
-from verification.credibility.faults.fault_planting import planted
 from verification.evidence.fault_record import read_record
 from verification.guests.case_exam import claims_of, prepare, question_of
 from verification.guests.doors.program_door import Solved

@@ -3,10 +3,10 @@
 from types import SimpleNamespace
 
 import pytest
+from faults_planted.fault_anchor import Change
+from faults_planted.fault_planting import planted
 
 from verification.cases.case_file import read_case, shipped_cases
-from verification.credibility.faults.fault_anchor import Change
-from verification.credibility.faults.fault_planting import planted
 from verification.judging.invariants.influence_error import conversion_errors, influence_coefficients
 from verification.judging.verdict import Outcome
 from verification.problem.coated_contact import CoatedContact

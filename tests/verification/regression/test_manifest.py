@@ -5,12 +5,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from faults_planted.fault_anchor import Change
+from faults_planted.fault_planting import planted
 from quick_case import QUICK, coatcheck
 
 from verification.cases.case_file import parse_case
 from verification.cases.toml_file import CaseError
-from verification.credibility.faults.fault_anchor import Change
-from verification.credibility.faults.fault_planting import planted
 from verification.credibility.self_tests import self_tests
 from verification.credibility.self_tests.known_outputs import ELSEWHERE, HERE
 from verification.credibility.self_tests.known_runs import MATERIAL, ran

@@ -4,14 +4,14 @@ import subprocess
 from dataclasses import replace
 
 import pytest
+from alarms import counted
 from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
-from verification.credibility.false_alarms import counted
-from verification.credibility.import_independence import PARTS, imports_of, parts, shared
 from verification.credibility.model_error import Cost, ModelError
-from verification.evidence import alarm_record
-from verification.evidence.fault_record import Catch, Record, Row, write_record
+from verification.evidence import alarm_record, code_record
+from verification.evidence.enclosure_record import SHIPPED
+from verification.evidence.fault_record import Catch, FaultRow, Record, write_record
 from verification.guests.pages import guests_section
 from verification.page.page_parts import Part, Section
 from verification.problem.quantity import SCALARS, SLOPES
@@ -36,7 +36,9 @@ RESULTS = [
 
 @pytest.fixture(scope="module")
 def evidence(tmp_path_factory) -> Evidence:
-    return gather(tmp_path_factory.mktemp("no_records"))
+    folder = tmp_path_factory.mktemp("records")
+    code_record.write_record(folder, code_record.read_record(SHIPPED))
+    return gather(folder)
 
 
 def section(evidence: Evidence, results: list[CaseResult] = RESULTS, **more) -> Section:
@@ -81,9 +83,9 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
 
 
 def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):
-    def row(name: str, catch: Catch, **more: str) -> Row:
+    def row(name: str, catch: Catch, **more: str) -> FaultRow:
         named = catch is Catch.DISAGREES
-        return Row(
+        return FaultRow(
             name, "frf", f"{name} is wrong", "semianalytic", catch, named, "", {}, 1.0, "", 2.0, (), **more
         )
 
@@ -121,39 +123,6 @@ def test_figures_of_this_run_follow_its_results(evidence):
     assert "0.5 to 1" in ranges  # h/a_h
 
 
-def test_the_methods_share_numpy_and_none_of_scipy():
-    found = {one.name: one for one in parts()}
-    assert tuple(found) == tuple(PARTS)
-    for one in found.values():
-        assert (one.forbidden, one.hidden) == ((), ())
-        assert one.statements > one.files > 5
-    first, second = found["semianalytic"], found["fem_reference"]
-    assert "numpy" in shared(first, second)
-    assert set(first.packages) & set(second.packages) == {"numpy", "scipy"}
-    assert "skfem" in second.packages
-    assert "skfem" not in first.packages
-
-
-def test_an_import_across_the_border_is_found(tmp_path, monkeypatch):
-    package = tmp_path / "borderless"
-    (package / "deep").mkdir(parents=True)
-    (package / "__init__.py").write_text("import os\nimport numpy as np\nfrom scipy import special, linalg\n")
-    (package / "deep" / "__init__.py").write_text("")
-    (package / "deep" / "a.py").write_text(
-        "def f():\n    from fem_reference.mesh import build\n    import borderless.deep\n"
-        "    import importlib\n    return importlib.import_module('semi' + 'analytic'), build\n"
-    )
-    monkeypatch.syspath_prepend(str(tmp_path))
-    found = imports_of("borderless", ("fem_reference",))
-    assert found.files == 3
-    assert found.modules == ("fem_reference.mesh", "numpy", "scipy.linalg", "scipy.special")
-    assert found.functions == ("scipy.linalg", "scipy.special")
-    assert found.forbidden == ("borderless/deep/a.py imports fem_reference.mesh",)
-    assert found.hidden == ("borderless/deep/a.py calls importlib.import_module",)
-    with pytest.raises(ValueError, match="no_such_package"):
-        imports_of("no_such_package")
-
-
 def test_other_codes_have_their_differences_in_the_report(evidence):
     (table,) = guests_section.section().parts[0].tables
     rows = {one.head.text: [cell.sort for cell in one.cells] for one in table.rows}
@@ -182,7 +151,9 @@ def test_a_record_is_older_than_the_code_only_where_that_has_changed_since(tmp_p
 
 def test_an_old_record_is_marked_on_its_page_and_on_the_first(evidence):
     for older in ((), ("faults",)):
-        one = Row("f", "frf", "f is wrong", "semianalytic", Catch.DISAGREES, True, "", {}, 1.0, "", 2.0, ())
+        one = FaultRow(
+            "f", "frf", "f is wrong", "semianalytic", Catch.DISAGREES, True, "", {}, 1.0, "", 2.0, ()
+        )
         record = replace(EMPTY, rows=(one,))
         text = render(Material(RESULTS, INFO, replace(evidence, faults=record, older=older)))
         assert text.count(" older ") == (2 if older else 0)
@@ -223,7 +194,8 @@ def test_what_both_methods_share_is_read_from_their_source(evidence, tmp_path, m
     ellipse = replace(RESULTS[0], problem={**RESULTS[0].problem, "indenter": ("ellipsoid", (1.0, 2.0))})
     assert "patches" in dict(first_page.shared(Material([ellipse], INFO, evidence)))["start values"]
     both = (replace(first, functions=("scipy.special.j0",)), replace(second, functions=("scipy.special.j0",)))
-    wrong = replace(evidence, parts=(*both, replace(first, forbidden=("a imports b",))))
+    parts = (*both, replace(first, forbidden=("a imports b",)))
+    wrong = replace(evidence, code=replace(evidence.code, parts=parts))
     said = dict(first_page.shared(Material(RESULTS, INFO, wrong)))
     assert (said["code"], said["special functions"]) == ("a imports b", "scipy.special.j0")
 

@@ -4,11 +4,11 @@ import shlex
 from dataclasses import replace
 
 import pytest
+from alarms import counted
 from synthetic_results import INFO, STEEL, contact, result_of
 from synthetic_study import study
 
 from verification.commands.report import report
-from verification.credibility.false_alarms import counted
 from verification.credibility.self_tests import SelfTest
 from verification.evidence.alarm_record import write_record
 from verification.regression.baseline_change import regression, updated

@@ -4,14 +4,14 @@ import csv
 from unittest import mock
 
 import pytest
+from enclosures_made.enclosed_problems import problems
 
 import fem_reference
 import semianalytic
 from verification.cases.published_table import FOLDER
 from verification.credibility.self_tests.known_verdicts import COATED, ROUNDING, distances
 from verification.evidence.enclosure_record import SHIPPED, WIDTH, read_record
-from verification.problem.coated_contact import CoatedContact, keywords
-from verification.sources.enclosures.enclosed_problems import problems
+from verification.problem.coated_contact import keywords
 from verification.sources.references import integral_equation
 from verification.sources.references.layered_half_space import LayeredHalfSpace
 
@@ -79,57 +79,3 @@ def test_the_uncertainty_of_both_methods_reaches_the_enclosures(solve, name):
         if not distance <= U
     ]
     assert outside == []
-
-
-@pytest.mark.slow
-def test_ball_arithmetic_repeats_an_enclosure():
-    pytest.importorskip("flint", reason="ball arithmetic is an extra: pip install 'coatcheck[certify]'")
-    from flint import ctx
-
-    from verification.sources.enclosures.contact_enclosure import enclose
-
-    name = "ratio_4_h_1"
-    bits, ctx.prec = ctx.prec, 128
-    balls = enclose(problems()[name])
-    ctx.prec = bits
-    for bounds, ball in zip(
-        ALL[name].bounds,
-        (balls.contact_radius, balls.approach, balls.pressure, balls.surface, *balls.interface),
-        strict=True,
-    ):
-        assert bounds.distance(float(ball.mid())) < 1e-14 * abs(bounds.middle)
-
-
-def test_both_forms_of_the_layers_overlap():
-    flint = pytest.importorskip("flint", reason="an extra: pip install 'coatcheck[certify]'")
-    from verification.sources.enclosures.enclosed_response import LayeredSolid
-
-    solid = LayeredSolid(((4e11, 0.2, 0.3), (5e10, 0.45, 0.4), (3e11, 0.0, 0.2)), (1e11, 0.1))
-    for k in (1e-3, 0.3, 2.0, 5.0):
-        x = [flint.acb(k) * h for h in solid.thickness]
-        for one, other in zip(solid.propagated(x), solid.reflected(x), strict=True):
-            assert one.overlaps(other)
-            assert one.real.rad() < 1e-9
-
-
-def test_the_bound_of_the_tail_holds_beyond_its_end():
-    flint = pytest.importorskip("flint", reason="an extra: pip install 'coatcheck[certify]'")
-    from verification.sources.enclosures.enclosed_response import LayeredSolid
-
-    h = 0.3
-    solid = LayeredSolid(((4e11, 0.2, h), (5e10, 0.45, 0.4)), (1e11, 0.1))
-    C, D = solid.tail(flint.arb(30))
-    for k in (30.0, 31.0, 45.0, 80.0):
-        x = k * flint.arb(h)
-        fast, slow = C * (1 + x) ** 2 * (-2 * x).exp(), D * (1 + x) * (-x).exp()
-        for value, bound in zip(solid.amplitudes(flint.acb(k)), (fast, fast, slow, slow), strict=True):
-            assert value.abs_upper() < bound
-            assert value.abs_upper() > bound / 1e5  # the bound is no triviality
-
-
-def test_an_elastic_ball_is_refused():
-    pytest.importorskip("flint", reason="an extra: pip install 'coatcheck[certify]'")
-    from verification.sources.enclosures.contact_enclosure import enclose
-
-    with pytest.raises(ValueError, match="ball"):
-        enclose(CoatedContact(10e-3, 20.0, (), (210e9, 0.3), ball=(210e9, 0.3, ())))

@@ -9,11 +9,9 @@ from math import isfinite
 from statistics import median
 
 from verification.cases.random_problems import FRICTION, MOST_COATINGS, POISSON, RATIO, THICKNESS, THINNEST
-from verification.credibility.import_independence import Part as Imports
-from verification.credibility.import_independence import shared
-from verification.credibility.manufactured_solutions import DesignOrder
 from verification.credibility.self_tests.known_verdicts import TEST
 from verification.evidence.alarm_record import DECADES, AlarmRecord
+from verification.evidence.code_record import DesignOrder, Imports, shared
 from verification.judging.verdict import Outcome
 from verification.page.number_text import plain
 from verification.page.page_parts import (
@@ -145,7 +143,7 @@ def _range(found: Sequence[float]) -> str:
     return plain(low, 3) if low == high else f"{plain(low, 3)} to {plain(high, 3)}"
 
 
-NO_RECORD = "Not measured: there is no record of {}; make one with: {} --record"
+NO_RECORD = "Not measured: there is no record of {}; make one in a checkout with: {} --record"
 
 
 def section(material: Material, coverage: Table) -> Section | None:
@@ -160,7 +158,7 @@ def section(material: Material, coverage: Table) -> Section | None:
     parts = [
         Part(stated("evidence")),
         Part(stated("intended"), [_range_table(contacts)], title="Intended use and limits"),
-        Part(stated("code"), [_design_table(evidence.orders)], title="Code verification"),
+        Part(_code(evidence), [_design_table(evidence.orders)], title="Code verification"),
         Part(stated("solution", found=_bracketed(contacts)), [coverage], title="Solution verification"),
         Part(
             f"{_compared(results)} {_enclosed(evidence)}",
@@ -182,7 +180,9 @@ def section(material: Material, coverage: Table) -> Section | None:
         Part("", [_alarm_table(evidence.alarms)], folded="Verdicts of clean problems that are not AGREES"),
     ]
     if evidence.faults is None:
-        parts.append(Part(NO_RECORD.format("planted faults", "coatcheck faults"), title="Planted faults"))
+        parts.append(
+            Part(NO_RECORD.format("planted faults", "python tests/tools faults"), title="Planted faults")
+        )
     return Section("credibility", "Credibility", parts, evidence.failures)
 
 
@@ -221,7 +221,7 @@ def _enclosed(evidence: Evidence) -> str:
     """What is proven of the exact reference, with what this run found of it."""
     record = evidence.enclosures
     if record is None:
-        return NO_RECORD.format("enclosures", "coatcheck certify")
+        return NO_RECORD.format("enclosures", "python tests/tools certify")
     values = [bounds for one in record.enclosures for bounds in one.bounds]
     held = next((test for test in evidence.self_tests if test.name == TEST), None)
     return stated(
@@ -235,9 +235,13 @@ def _enclosed(evidence: Evidence) -> str:
     )
 
 
+def _code(evidence: Evidence) -> str:
+    return stated("code", made=_when(evidence, "code") if evidence.code else "at no time")
+
+
 def _independent(evidence: Evidence) -> str:
     if not evidence.parts:
-        return "Not measured: the source of the packages could not be read."
+        return NO_RECORD.format("imports", "python tests/tools code")
     first, second = evidence.parts[:2]
     common = ", ".join(shared(first, second)) or "none"
     both = ", ".join(sorted(set(first.packages) & set(second.packages))) or "none"
@@ -247,7 +251,7 @@ def _independent(evidence: Evidence) -> str:
     found = f"None of {counted} imports in {files} files of both methods and the references is forbidden."
     if bad:
         found = f"{len(bad)} imports are forbidden: {'; '.join(bad[:5])}."
-    return stated("independent", found=found, both=both, common=common)
+    return stated("independent", made=_when(evidence, "code"), found=found, both=both, common=common)
 
 
 def _histograms(evidence: Evidence) -> Gallery | None:
@@ -271,5 +275,5 @@ def _histograms(evidence: Evidence) -> Gallery | None:
 def _alarms(evidence: Evidence) -> str:
     record = evidence.alarms
     if record is None:
-        return NO_RECORD.format("false alarms", "coatcheck alarms")
+        return NO_RECORD.format("false alarms", "python tests/tools alarms")
     return stated("false_alarms", record=record, made=_when(evidence, "alarms"))

@@ -4,17 +4,9 @@ from collections import Counter
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from verification.credibility.faults.first_notice import (
-    Noticed,
-    kinds,
-    method_score,
-    noticed,
-    of_method,
-    unused,
-)
 from verification.credibility.self_tests import SelfTest
-from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, Record
-from verification.evidence.fault_record import Row as Fault
+from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, FaultRow, Record
+from verification.evidence.first_notice import Noticed, kinds, method_score, noticed, of_method, unused
 from verification.page.number_text import plain, scientific, seconds
 from verification.page.page_parts import Cell, Part, Section, Table, Value, row, table_of, words
 from verification.page.source_labels import source_label
@@ -93,7 +85,7 @@ def faults_section(record: Record) -> Section:
     return Section("faults", "Planted faults", parts, failures)
 
 
-def _only_coated(row: Fault) -> bool:
+def _only_coated(row: FaultRow) -> bool:
     """True where comparisons on uncoated cases all pass and some on coated ones do not."""
     bare = [seen for column, seen in row.columns.items() if column.startswith("bare")]
     coated = [seen for column, seen in row.columns.items() if column.startswith("coated")]
@@ -101,7 +93,7 @@ def _only_coated(row: Fault) -> bool:
     return bool(bare) and passed and any(seen.disagree + seen.inconclusive for seen in coated)
 
 
-def _groups(record: Record) -> list[tuple[str, Sequence[Fault]]]:
+def _groups(record: Record) -> list[tuple[str, Sequence[FaultRow]]]:
     """Title and faults of each group that has any."""
     groups = ((title, [row for row in record.rows if row.group == key]) for key, title in GROUPS.items())
     return [(title, faults) for title, faults in groups if faults]
@@ -135,8 +127,8 @@ def _survivors(record: Record) -> Table:
     )
 
 
-def _matrix(faults: Sequence[Fault], caption: str) -> Table:
-    columns: list[tuple[str, Callable[[Fault], Value]]] = [
+def _matrix(faults: Sequence[FaultRow], caption: str) -> Table:
+    columns: list[tuple[str, Callable[[FaultRow], Value]]] = [
         ("fault", lambda fault: Cell(fault.name, note=fault.by)),
         ("fault planted", lambda fault: words(fault.description)),
         ("in", lambda fault: source_label(fault.where)),
@@ -154,7 +146,7 @@ def _matrix(faults: Sequence[Fault], caption: str) -> Table:
     return table_of(caption, faults, columns, spans, "faults")
 
 
-def _controls(controls: Sequence[Fault]) -> Table:
+def _controls(controls: Sequence[FaultRow]) -> Table:
     """Trials with nothing planted: silence is right, a detection is a false alarm."""
     silent = Cell("✓ no alarm", 1.0, "verdict agrees")
     return table_of(
@@ -172,12 +164,12 @@ def _controls(controls: Sequence[Fault]) -> Table:
     )
 
 
-def _catch_cell(row: Fault) -> Cell:
+def _catch_cell(row: FaultRow) -> Cell:
     text, css, meaning = _CATCHES[row.catch]
     return Cell(text, float(list(Catch).index(row.catch)), css, row.by or meaning)
 
 
-def _seen_cell(fault: Fault, column: str) -> Cell:
+def _seen_cell(fault: FaultRow, column: str) -> Cell:
     seen = fault.columns.get(column)
     if seen is None:
         return Cell("", None, "nothing", "not made")

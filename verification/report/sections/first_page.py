@@ -10,9 +10,9 @@ from typing import Any
 from scipy.special import betaincinv
 
 from verification.cases.random_problems import MOST_COATINGS
-from verification.credibility.faults.first_notice import COUNTED, Noticed, noticed
-from verification.credibility.import_independence import shared_functions
 from verification.credibility.model_error import ASSUMPTIONS
+from verification.evidence.code_record import shared_functions
+from verification.evidence.first_notice import COUNTED, Noticed, noticed
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.number_text import plain, scientific
 from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from faults_planted.fault_planting import Fault
 from verification.cases.toml_file import load_toml
-from verification.credibility.faults.fault_planting import Fault
 from verification.evidence.fault_record import GROUPS
 from verification.running.json_records import decode
 

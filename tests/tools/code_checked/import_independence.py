@@ -7,10 +7,10 @@ they share are named in the registry of sources.
 import ast
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+from verification.evidence.code_record import Imports
 from verification.sources.source_registry import METHODS, SOURCES
 
 # Each part with the packages that it must not import.
@@ -19,46 +19,12 @@ PARTS = {name: (*(other for other in _METHODS if other != name), "verification")
 PARTS["verification.sources.references"] = _METHODS
 
 
-@dataclass(frozen=True)
-class Part:
-    """Package ``name``: how many ``files`` with how many ``statements`` of import were read.
-
-    modules : every module outside the standard library that it imports, its own left out.
-    forbidden : messages, one for each forbidden import.
-    hidden : messages, one for each import that is resolved only at run time.
-    functions : full names of what it uses of NumPy and SciPy, numpy.linalg.solve.
-    """
-
-    name: str
-    files: int
-    statements: int
-    modules: tuple[str, ...]
-    forbidden: tuple[str, ...]
-    hidden: tuple[str, ...]
-    functions: tuple[str, ...] = ()
-
-    @property
-    def packages(self) -> tuple[str, ...]:
-        """The top-level packages among ``modules``."""
-        return tuple(sorted({module.partition(".")[0] for module in self.modules}))
-
-
-def parts() -> tuple[Part, ...]:
+def parts() -> tuple[Imports, ...]:
     """Both methods, then the references. Raises ValueError where one is not installed as source."""
     return tuple(imports_of(name, forbidden_packages) for name, forbidden_packages in PARTS.items())
 
 
-def shared(first: Part, second: Part) -> tuple[str, ...]:
-    """Modules that both import, by the name in the source: scipy.special, numpy, ..."""
-    return tuple(sorted(set(first.modules) & set(second.modules)))
-
-
-def shared_functions(first: Part, second: Part) -> tuple[str, ...]:
-    """What both use of NumPy and SciPy, by full names."""
-    return tuple(sorted(set(first.functions) & set(second.functions)))
-
-
-def imports_of(name: str, forbidden_packages: tuple[str, ...] = ()) -> Part:
+def imports_of(name: str, forbidden_packages: tuple[str, ...] = ()) -> Imports:
     """Read every file of the package ``name``. Raises ValueError where there is no source to read."""
     folder = _folder(name)
     modules: set[str] = set()
@@ -78,7 +44,7 @@ def imports_of(name: str, forbidden_packages: tuple[str, ...] = ()) -> Part:
                 modules.add(module)
         functions.update(_used(nodes))
         hidden += [f"{name}/{place} calls {called}" for called in _called_by_name(nodes)]
-    return Part(
+    return Imports(
         name,
         files,
         statements,

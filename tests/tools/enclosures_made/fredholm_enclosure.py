@@ -28,8 +28,8 @@ from dataclasses import dataclass
 import numpy as np
 from flint import acb, arb, arb_mat
 
-from verification.sources.enclosures.enclosed_integrals import Panels
-from verification.sources.enclosures.enclosed_response import LayeredSolid
+from enclosures_made.enclosed_integrals import Panels
+from enclosures_made.enclosed_response import LayeredSolid
 
 REFINEMENTS = 8
 

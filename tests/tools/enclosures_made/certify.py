@@ -1,4 +1,4 @@
-"""coatcheck certify: proven enclosures of contacts, by ball arithmetic."""
+"""Proven enclosures of contacts, by ball arithmetic."""
 
 import datetime
 import time
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from rich.markup import escape
 
+from enclosures_made.enclosed_problems import problems, profile_radii
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import RECORDS, require_checkout
@@ -30,7 +31,6 @@ from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import CoatedContact
 from verification.regression.run_exit_codes import EXIT
 from verification.running.json_records import plain
-from verification.sources.enclosures.enclosed_problems import problems, profile_radii
 
 if TYPE_CHECKING:
     from flint import arb
@@ -79,7 +79,7 @@ def certify(
         kept = read_record(records)
         others = {one.name: one for one in kept.enclosures} if kept and names else {}
         merged = others | {one.name: one for one in found}
-        info = run_info("coatcheck certify", started, 1)
+        info = run_info("tests/tools certify", started, 1)
         content = EnclosureRecord(
             tuple(merged.values()),
             info.started,
@@ -104,7 +104,7 @@ def certify(
 
 def _certified(name: str, problem: CoatedContact) -> Enclosure:
     """The enclosure of a problem. Raises ValueError where a bound cannot be proven."""
-    from verification.sources.enclosures.contact_enclosure import enclose
+    from enclosures_made.contact_enclosure import enclose
 
     began, radii = time.process_time(), profile_radii(name)
     balls = enclose(problem, radii)

@@ -1,4 +1,4 @@
-"""All trials of a run of ``coatcheck faults``: the clean cases, one process for each fault, their record."""
+"""All trials of planted faults: the clean cases, one process for each fault, their record."""
 
 import time
 from collections.abc import Sequence
@@ -7,18 +7,27 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from faults_planted.fault_catalogue import CONTROLS, FAULTS
+from faults_planted.fault_planting import Fault
+from faults_planted.fault_trial import Check, Trial, try_fault
 from verification.cases.case_file import Case, default_cases, read_case
-from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS
-from verification.credibility.faults.fault_planting import Fault
-from verification.credibility.faults.fault_trial import Check, Trial, try_fault
-from verification.evidence.fault_record import CAUGHT, COLUMNS, EQUIVALENT_CHANGE, Catch, Record, Row, Tally
+from verification.evidence.fault_record import (
+    CAUGHT,
+    COLUMNS,
+    EQUIVALENT_CHANGE,
+    Catch,
+    FaultRow,
+    Record,
+    Tally,
+)
 from verification.judging.verdict import Outcome
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.running.json_records import decode, encode
 from verification.running.pool.pool_task import Task
-from verification.running.provenance import fingerprint
+from verification.running.provenance import CODE, fingerprint
 
+TRIED = (*CODE, "tests.tools.faults_planted")  # the code that a trial depends on
 WORST_FIRST = (Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT)  # of those that do not pass
 
 
@@ -64,7 +73,7 @@ def kept_trial(fault: Fault, output: Path) -> Trial | None:
         data = read_checked(_path(fault, output))
     except StoreError:
         return None
-    same = data.get("fault") == encode(fault) and data.get("made_by") == fingerprint()
+    same = data.get("fault") == encode(fault) and data.get("made_by") == fingerprint(TRIED)
     return _trial(data) if same else None
 
 
@@ -84,14 +93,14 @@ def record_of(trials: Sequence[Trial], info: RunInfo) -> Record:
     )
 
 
-def row_of(fault: Fault, trial: Trial) -> Row:
+def row_of(fault: Fault, trial: Trial) -> FaultRow:
     """The row of one trial: its checks counted column by column."""
     by_column = {column: [c for c in trial.checks if c.column == column] for column in COLUMNS}
     bad = [check for check in trial.checks if not check.passed]
     decided = [c for c in bad if c.outcome is not Outcome.NO_RESULT]
     predicted = [c for c in decided if c.name in fault.predicted]
     catch = _catch(bad, fault, trial)
-    return Row(
+    return FaultRow(
         fault.name,
         fault.group,
         fault.description,
@@ -148,7 +157,7 @@ def _trial(data: dict[str, Any]) -> Trial:
 
 def main(fault: Fault, clean: Path, path: Path) -> None:
     """Try ``fault`` against the clean run in ``clean`` and store its trial at ``path``."""
-    made_by = fingerprint()  # before anything is planted
+    made_by = fingerprint(TRIED)  # before anything is planted
     trial = try_fault(fault, clean)
     trial = replace(trial, seconds=time.process_time())  # of this process
     write_checked(path, {"made_by": made_by, "fault": encode(fault), "trial": encode(trial)})

@@ -1,10 +1,12 @@
-"""coatcheck alarms: false alarms among the verdicts on random problems."""
+"""False alarms: verdicts other than AGREES on random problems that contain no error."""
 
 import datetime
+from collections.abc import Sequence
 from dataclasses import asdict
 from functools import partial
 from pathlib import Path
 
+import numpy as np
 from rich.markup import escape
 
 from verification.cases.case_file import Case, parse_case
@@ -24,15 +26,18 @@ from verification.commands.common.shared_options import (
 from verification.commands.common.task_progress import kept_results, run_info, solve, worker_count
 from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
 from verification.commands.common.terminal_bar import require_gmsh
-from verification.credibility.false_alarms import counted
-from verification.evidence.alarm_record import AlarmRecord, write_record
+from verification.evidence.alarm_record import DECADES, Alarm, AlarmRecord, Ratios, write_record
+from verification.judging.verdict import Outcome
 from verification.regression.junit_xml import junit_xml
 from verification.regression.run_exit_codes import exit_code
+from verification.running.case_result import CaseResult, RunInfo
 from verification.running.case_tasks import case_task
 from verification.running.checked_files import locked, write_atomically
 from verification.running.json_records import plain
+from verification.sources.source_registry import EXACT, METHODS
 
 MOST_SHOWN = 12
+LEAST = 1e-9  # of the largest reference value of a profile: smaller errors are rounding
 
 
 @with_exit_code
@@ -90,7 +95,7 @@ def alarms(
         solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
         results = [kept.get(case.name) or solved[case.name] for case in cases]
         of = f"--count {count} --seed {seed} {kind}".rstrip()
-        info = run_info(f"coatcheck alarms {of}", started, jobs)
+        info = run_info(f"tests/tools alarms {of}", started, jobs)
         page = write_report(Material(results, info), output, junit_xml(results, info))
         found = counted(results, seed, info)
         stored = write_record(records, found) if record else None
@@ -121,4 +126,52 @@ def _print(found: AlarmRecord, page: Path, stored: Path | None) -> None:
         f"{found.agreeing} problems agree throughout",
         escape(f"{found.seconds:.0f} s; report: {page}"),
         *([escape(f"recorded: {stored}")] if stored is not None else []),
+    )
+
+
+def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRecord:
+    """The alarms in ``results``; a case without any comparison is one."""
+    verdicts = [(r, claim, verdict) for r in results for claim, verdict in r.verdicts]
+    invariants = [(r, invariant) for r in results for invariant in r.invariants]
+    nothing = ("", "", (), Outcome.NO_RESULT, "nothing was compared")
+    found: list[tuple[CaseResult, tuple[str, str, tuple[str, ...], Outcome, str]]] = [
+        *((r, (c.quantity, c.line, c.between, v.outcome, v.reason)) for r, c, v in verdicts),
+        *((r, (i.name, "", (i.source,), i.outcome, i.message)) for r, i in invariants),
+        *((r, nothing) for r in results if not r.verdicts),
+    ]
+    alarms = [Alarm(r.name, r.title, *row, r.text) for r, row in found if row[3] is not Outcome.AGREES]
+    return AlarmRecord(
+        seed,
+        len(results),
+        sum(result.outcome is Outcome.AGREES for result in results),
+        len(verdicts),
+        len(invariants),
+        tuple(alarms),
+        info.started,
+        info.seconds,
+        info.commit,
+        info.machine,
+        dict(info.versions),
+        tuple(_ratios(results, source) for source in METHODS),
+    )
+
+
+def _ratios(results: Sequence[CaseResult], source: str) -> Ratios:
+    found = []
+    for result in results:
+        profiles = {(p.quantity, p.line, p.source): p for p in result.profiles}
+        for (quantity, line, name), mine in profiles.items():
+            exact = profiles.get((quantity, line, EXACT[0]))
+            if name != source or exact is None or mine.uncertainty is None or exact.uncertainty is None:
+                continue
+            error = np.abs(mine.value - exact.value)
+            counted = error > LEAST * np.abs(exact.value).max(initial=0.0)
+            U = (mine.uncertainty + exact.uncertainty)[counted]
+            found.append(error[counted] / np.maximum(U, np.finfo(float).tiny))
+    ratio = np.concatenate(found) if found else np.zeros(0)
+    place = np.clip(np.log10(np.maximum(ratio, 1e-99)), DECADES[0], DECADES[-1])
+    counts, _ = np.histogram(place, DECADES)
+    within, median = (float(np.mean(ratio <= 1)), float(1 / np.median(ratio))) if ratio.size else (1.0, 0.0)
+    return Ratios(
+        source, int(ratio.size), within, median, tuple(counts.tolist()), float(ratio.max(initial=0.0))
     )

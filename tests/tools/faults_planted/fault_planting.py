@@ -14,10 +14,11 @@ from importlib import import_module
 from types import ModuleType
 from typing import Any
 
-from verification.credibility.faults.fault_anchor import Change, PlantError, definition, edited
+from faults_planted.fault_anchor import Change, PlantError, definition, edited
 from verification.sources.source_registry import METHODS, SOURCES
 
-PACKAGES = (*(SOURCES[name].package for name in METHODS), "verification")
+# Where names are replaced; those of the trials too, which import what they judge with.
+PACKAGES = (*(SOURCES[name].package for name in METHODS), "verification", "faults_planted")
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ Two bonded materials on a unit square, harmonics 0 and 1. A displacement field i
 are applied, and the error of the computed field has to fall at the design order as the mesh is refined.
 """
 
-from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -14,29 +13,10 @@ from skfem import Basis, MeshTri
 from fem_reference.axisymmetric import ELEMENTS, Discretisation, elasticity
 from fem_reference.linear_system import constrained_solve
 from fem_reference.mesh import MeridianMesh
+from verification.evidence.code_record import DesignOrder
 from verification.problem.array_types import Array
 
 CELLS = (4, 8)  # a side
-COARSE = 0.25  # admissible shortfall of the order on meshes this coarse
-
-
-@dataclass(frozen=True)
-class DesignOrder:
-    """Orders of the displacement and of its gradient observed with elements of ``order``.
-
-    The design orders are order + 1 and order, in L2.   errors : of the displacement, coarse then fine.
-    """
-
-    order: int
-    harmonic: int
-    displacement: float
-    gradient: float
-    errors: tuple[float, float]
-
-    @property
-    def as_designed(self) -> bool:
-        """True where neither order is more than ``COARSE`` below its design."""
-        return self.displacement > self.order + 1 - COARSE and self.gradient > self.order - COARSE
 
 
 def design_orders(cells: tuple[int, int] = CELLS) -> tuple[DesignOrder, ...]:

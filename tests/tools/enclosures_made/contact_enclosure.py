@@ -23,10 +23,10 @@ from dataclasses import dataclass
 
 from flint import acb, arb, ctx
 
+from enclosures_made.enclosed_integrals import of_bounded, panels
+from enclosures_made.enclosed_response import LayeredSolid
+from enclosures_made.fredholm_enclosure import Equation, Waves, equation, waves
 from verification.problem.coated_contact import CoatedContact
-from verification.sources.enclosures.enclosed_integrals import of_bounded, panels
-from verification.sources.enclosures.enclosed_response import LayeredSolid
-from verification.sources.enclosures.fredholm_enclosure import Equation, Waves, equation, waves
 
 EXCESS, SURFACE, UPPER, LOWER = range(4)
 STEPS = 30

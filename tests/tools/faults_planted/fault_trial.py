@@ -7,11 +7,11 @@ from pathlib import Path
 
 import numpy as np
 
+from faults_planted import short_study
+from faults_planted.fault_planting import Fault, planted
 from verification.cases.case_file import Case, default_cases, read_case
 from verification.cases.published_file import PublishedCase, published_cases, read_published
 from verification.cases.published_table import PublishedColumn
-from verification.credibility import accuracy_study
-from verification.credibility.faults.fault_planting import Fault, planted
 from verification.credibility.self_tests import SelfTest, self_tests
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.invariants import check as invariants_of
@@ -162,7 +162,7 @@ def try_fault(fault: Fault, clean_folder: Path) -> Trial:
             checks += found
             changes.append(moved)
         if _staged(fault) and not _noticed(checks):
-            judged = accuracy_study.quick()
+            judged = short_study.quick()
             checks += [Check("studies", row.name, "", "", row.outcome, row.message) for row in judged]
         tests = () if fault.where in METHODS and _settled(checks, fault) else self_tests()
     checks += [of_self_test(test) for test in tests]

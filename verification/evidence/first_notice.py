@@ -2,7 +2,7 @@
 
 from enum import StrEnum
 
-from verification.evidence.fault_record import COLUMNS, SMALLEST_CHANGE, Record, Row
+from verification.evidence.fault_record import COLUMNS, SMALLEST_CHANGE, FaultRow, Record
 
 
 class Noticed(StrEnum):
@@ -28,7 +28,7 @@ _NOTICED = {
 }
 
 
-def noticed(row: Row) -> Noticed:
+def noticed(row: FaultRow) -> Noticed:
     """The first kind of check that reports the fault: it disagrees, or U exceeds its cap."""
     if row.failure:
         return Noticed.NOT_TRIED
@@ -44,12 +44,12 @@ def noticed(row: Row) -> Noticed:
     return Noticed.BASELINE if baseline is not None and baseline.disagree else Noticed.NOTHING
 
 
-def unused(row: Row) -> bool:
+def unused(row: FaultRow) -> bool:
     """Whether the fault changes no number of any run: an argument for a further case."""
     return not row.failure and row.change <= SMALLEST_CHANGE and noticed(row) is Noticed.NOTHING
 
 
-def of_method(record: Record) -> tuple[Row, ...]:
+def of_method(record: Record) -> tuple[FaultRow, ...]:
     """The faults in the semi-analytical method."""
     return tuple(row for row in record.rows if row.where == "semianalytic")
 

@@ -1,4 +1,4 @@
-"""coatcheck faults: mistakes planted one at a time, with the checks of the default run that catch them."""
+"""Planted faults: mistakes planted one at a time, with the checks of the default run that catch them."""
 
 import datetime
 from collections import Counter
@@ -28,7 +28,7 @@ from verification.running.case_tasks import case_task
 from verification.running.checked_files import locked
 
 if TYPE_CHECKING:
-    from verification.credibility.faults.fault_planting import Fault
+    from faults_planted.fault_planting import Fault
     from verification.evidence.fault_record import Record
 
 
@@ -64,7 +64,7 @@ def faults(
         time_limit: Seconds one fault may take before it is stopped and counted as not tried.
     """
     jobs = worker_count(jobs, time_limit)
-    from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS, chosen
+    from faults_planted.fault_catalogue import CONTROLS, FAULTS, chosen
     from verification.evidence.fault_record import GROUPS
 
     if group is not None and (group not in GROUPS or names):
@@ -75,7 +75,7 @@ def faults(
     except KeyError as error:
         name = str(error.args[0])
         near = did_you_mean(name, FAULTS | CONTROLS)
-        raise CommandError(f"{name}: no fault has this name, see coatcheck faults --list{near}") from None
+        raise CommandError(f"{name}: no fault has this name, see --list{near}") from None
     if listed:
         _list(wanted, as_json)
         return 0
@@ -85,7 +85,7 @@ def faults(
         require_checkout(records, "--records")
     require_gmsh()
 
-    from verification.credibility.faults import fault_campaign
+    from faults_planted import fault_campaign
     from verification.evidence.fault_record import to_json, write_record
 
     started = datetime.datetime.now(datetime.UTC)
@@ -96,7 +96,7 @@ def faults(
         order = sorted((f for f in wanted if f.name not in kept), key=fault_campaign.cost, reverse=True)
         trials = [fault_campaign.trial_task(fault, output) for fault in order]
         fresh = {trial.fault: trial for trial in solve(trials, jobs, time_limit, quiet or as_json)}
-        info = run_info("coatcheck faults", started, jobs)
+        info = run_info("tests/tools faults", started, jobs)
         found = fault_campaign.record_of([kept.get(f.name) or fresh[f.name] for f in wanted], info)
         matrix = write_record(output, found)
         if record:
@@ -112,7 +112,7 @@ def solve_clean(
     wanted: Sequence["Fault"], output: Path, jobs: int, time_limit: float, resume: bool, silent: bool
 ) -> None:
     """Solve the cases of ``wanted`` without a fault; ends the command where that fails."""
-    from verification.credibility.faults import fault_campaign
+    from faults_planted import fault_campaign
 
     folder = fault_campaign.clean_folder(output)
     cases = fault_campaign.clean_cases(wanted)

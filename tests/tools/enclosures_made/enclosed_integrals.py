@@ -23,7 +23,7 @@ from itertools import pairwise
 
 from flint import acb, arb, ctx
 
-from verification.sources.enclosures.enclosed_response import LayeredSolid
+from enclosures_made.enclosed_response import LayeredSolid
 
 NODES = 40
 POWERS = (0, 1, 2)

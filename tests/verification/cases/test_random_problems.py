@@ -1,13 +1,8 @@
-"""Random problems: the same everywhere, valid, as wide as they are said to be; what counts as an alarm."""
+"""Random problems: the same everywhere, valid, as wide as they are said to be."""
 
-import json
-from dataclasses import replace
-from functools import partial
 from pathlib import Path
 
-import pytest
-from quick_case import coatcheck
-from synthetic_results import INFO, STEEL, contact, crashed, result_of
+from synthetic_results import STEEL
 
 from verification.cases.case_file import Case, parse_case
 from verification.cases.random_problems import (
@@ -20,11 +15,8 @@ from verification.cases.random_problems import (
     draw,
     draw_ellipse,
 )
-from verification.credibility.false_alarms import counted
 from verification.desk.stack_text import outside_verified
-from verification.evidence.alarm_record import read_record
 from verification.judging.standard_claims import standard_claims
-from verification.judging.verdict import Outcome
 
 E, NU = STEEL
 
@@ -89,58 +81,3 @@ def test_draws_are_valid_cases_with_every_claim_and_fill_their_ranges():
     friction = sorted(p.friction for p in problems)
     assert 70 < friction.count(0.0) < 130  # a third
     assert 0.78 < friction[-1] <= FRICTION[1]
-
-
-def test_whatever_is_not_agreement_is_an_alarm():
-    good = result_of(contact((2 * E, NU, 1.0)), name="good", text="title = 'good'\n")
-    wrong = result_of(
-        contact((4 * E, NU, 1.0)), name="wrong", errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}
-    )
-    vague = result_of(contact((E / 2, NU, 1.0)), name="vague", errors={"semianalytic": 4e-3}, text="x = 1\n")
-    dead = crashed(contact((2 * E, NU, 1.0)), "dead", "killed")
-    clean = counted([good], 1, INFO)
-    assert (clean.alarms, clean.agreeing, clean.problems) == ((), 1, 1)
-    assert clean.comparisons == len(good.verdicts)
-    empty = replace(good, name="empty", verdicts=())
-    found = counted([good, wrong, vague, dead, empty], 1, INFO)
-    assert found.agreeing == 1
-    outcomes = {alarm.case: set() for alarm in found.alarms}
-    for alarm in found.alarms:
-        outcomes[alarm.case].add(alarm.outcome)
-    assert outcomes["dead"] == outcomes["empty"] == {Outcome.NO_RESULT}
-    assert Outcome.INCONCLUSIVE in outcomes["vague"]
-    assert Outcome.DISAGREES in outcomes["wrong"]
-    assert {alarm.toml for alarm in found.alarms if alarm.case == "vague"} == {"x = 1\n"}
-    assert "good" not in outcomes
-    assert found.comparisons == sum(len(r.verdicts) for r in (good, wrong, vague, dead))
-
-
-def test_ratios_count_every_error_over_its_uncertainty():
-    problem = contact((4 * E, NU, 1.0))
-    within, beyond = (
-        counted([result_of(problem, errors={"semianalytic": 2e-3}, stated={"semianalytic": stated})], 1, INFO)
-        for stated in (2.0, 0.5)
-    )
-    found = [next(r for r in one.ratios if r.source == "semianalytic") for one in (within, beyond)]
-    for semi in found:
-        assert sum(semi.counts) == semi.values > 0
-    generous, narrow = found
-    assert (generous.within, narrow.within < 1) == (1.0, True)
-    assert generous.largest <= 1 < narrow.largest
-    assert generous.median > 1.5 * narrow.median  # the exact reference has an uncertainty too
-
-
-@pytest.mark.slow
-def test_the_command_records_what_it_found(tmp_path):
-    alarms = partial(coatcheck, "alarms", "--count", "2", "--seed", "1", cwd=tmp_path)
-    done = alarms("--record", "--records", "records", "--json")
-    assert done.returncode == 0, done.stdout
-    record = read_record(tmp_path / "records")
-    assert record is not None
-    assert (record.problems, record.agreeing, record.alarms) == (2, 2, ())
-    assert json.loads(done.stdout)["comparisons"] == record.comparisons > 100
-    assert (tmp_path / "reports" / "alarms" / "problems" / "draw_1_001.toml").read_text() == draw(1, 1).text
-    stored = tmp_path / "reports" / "alarms" / "cases" / "draw_1_001.json"
-    first = stored.stat().st_mtime_ns
-    assert alarms("--resume", "--quiet").returncode == 0
-    assert stored.stat().st_mtime_ns == first

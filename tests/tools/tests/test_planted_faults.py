@@ -1,22 +1,26 @@
 """Planted faults: the catalogue is whole, plants leave no trace, trials see what they must."""
 
 import ast
+import subprocess
+import sys
 import tomllib
 from contextlib import suppress
 from copy import deepcopy
 from dataclasses import replace
 from importlib import import_module
+from pathlib import Path
 
 import pytest
+from faults_planted import fault_trial
+from faults_planted.fault_anchor import Change, PlantError, definition, edited
+from faults_planted.fault_campaign import record_of, row_of
+from faults_planted.fault_catalogue import CONTROLS, FAULTS, LISTS
+from faults_planted.fault_planting import Fault, owner_of, planted
+from faults_planted.fault_trial import Check, Trial, clean_path, try_fault
+from faults_planted.faults import faults
 from synthetic_results import INFO
 
 from verification.cases.case_file import default_cases, read_case, shipped_cases
-from verification.commands.credibility.faults import faults
-from verification.credibility.faults.fault_anchor import Change, PlantError, definition, edited
-from verification.credibility.faults.fault_campaign import record_of, row_of
-from verification.credibility.faults.fault_catalogue import CONTROLS, FAULTS, LISTS
-from verification.credibility.faults.fault_planting import Fault, owner_of, planted
-from verification.credibility.faults.fault_trial import Check, Trial, clean_path, try_fault
 from verification.evidence.fault_record import Catch, Record, read_record, to_json, write_record
 from verification.judging.verdict import Outcome
 from verification.running import contact_run as running
@@ -26,6 +30,7 @@ from verification.running.checked_files import StoreError, read_checked, write_c
 from verification.sources import source_registry
 from verification.sources.references.hertz import Hertz, HertzContact
 
+TOOLS = Path(__file__).parents[1]
 ALL = tuple((FAULTS | CONTROLS).values())
 
 
@@ -103,6 +108,13 @@ def test_a_function_imported_by_name_is_exchanged_there_too():
         assert loading.constrained_solve is linear_system.constrained_solve
         assert "planted" in loading.constrained_solve.__code__.co_filename
     assert "planted" not in loading.constrained_solve.__code__.co_filename
+
+
+def test_what_a_trial_samples_with_has_the_fault_too():
+    original = fault_trial.sample_contact
+    with planted(FAULTS["relative_for_absolute"].changes):
+        assert fault_trial.sample_contact is not original
+    assert fault_trial.sample_contact is original
 
 
 def test_two_edits_of_one_function_both_take():
@@ -242,12 +254,21 @@ def test_a_record_passes_only_where_enough_is_caught_and_nothing_is_left_unsaid(
     assert not lost.passed
 
 
-def test_the_command_tries_resumes_and_writes_the_matrix(tmp_path, capsys):
-    assert faults("sides_swapped", output=tmp_path, jobs=1) == 0
-    assert "1 of 1" in capsys.readouterr().out.replace("\n", " ")
+def test_the_command_tries_resumes_and_writes_the_matrix(tmp_path):
+    words = [sys.executable, TOOLS, "faults", "sides_swapped", "--output", tmp_path, "--jobs", "1"]
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "1 of 1" in " ".join(done.stdout.split())
     record = read_record(tmp_path)
     assert record is not None
     assert record.rows[0].as_predicted
     stamp = (tmp_path / "trials" / "sides_swapped.json").stat().st_mtime_ns
-    assert faults("sides_swapped", output=tmp_path, jobs=1, resume=True, quiet=True) == 0
+    assert subprocess.run([*words, "--resume", "--quiet"]).returncode == 0
     assert (tmp_path / "trials" / "sides_swapped.json").stat().st_mtime_ns == stamp
+
+
+def test_a_mistyped_name_is_answered_with_the_nearest(capsys):
+    assert faults("kapsign") == faults(group="stres") == 2
+    said = capsys.readouterr().err
+    assert "kap_sign" in said
+    assert "stress" in said
