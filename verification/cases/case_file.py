@@ -344,7 +344,6 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
     claims = _claims(path, checked, problem)
     if not claims:
         raise CaseError(f"{path}: claim: nothing is claimed of this problem, so that nothing would be judged")
-    limits = checked.problem.limits()
     return Case(
         path.stem,
         checked.title,
@@ -354,8 +353,8 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
         numerics,
         text,
         checked.resolve,
-        (*treated, *warnings_of(problem, limits), *residual_warnings(residual)),
-        limits,
+        (*treated, *warnings_of(problem), *residual_warnings(residual)),
+        checked.problem.limits(),
         residual,
         checked.problem.layers(over),
         checked.problem.names(),

@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from textwrap import wrap
@@ -11,6 +11,7 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 from rich.console import Console
 from rich.markup import escape
+from rich.progress import Progress
 from rich.table import Column, Table
 from threadpoolctl import threadpool_limits
 
@@ -33,7 +34,9 @@ from verification.desk.contact_answer import (
     differences,
     summary,
     usual_seconds,
+    with_name,
 )
+from verification.desk.layer_limits import LayerLimit, layer_limits, yield_strengths
 from verification.desk.stack_text import body_label, conditions, described, outside_verified, stack
 from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import FLAT
@@ -110,13 +113,13 @@ def solve(
         with bars() as bar:
             bar.add_task("finite elements", total=1)
             second = _answer(case, SECOND)
-    # Before the solve the peak pressure was that of Hertz.
-    told = any(line.startswith("peak pressure") for line in case.warnings)
-    late = () if told else beyond_limits(first.numbers["peak_pressure"][0], case.limits)
+    limited = _limited(case, first, bars)
+    late = [line for one in limited for line in one.warnings(_layer_name(case, one))]
+    late += beyond_limits(first.numbers["peak_pressure"][0], case.limits)
     print_warnings(late, case.name, strict=strict, silent=as_json)
     apart = differences(first, second) if second is not None else ()
     if not (as_json or strict):
-        _print(case, first, apart, halved)
+        _print(case, first, apart, halved, limited)
     with bars() as bar:
         task = bar.add_task("error of the model", total=1)
         beyond = model_error(case.problem)
@@ -139,6 +142,7 @@ def solve(
             "warnings": [*case.warnings, *late, *costs],
             "model_error": {"message": beyond.message(), **encode(beyond)},
             "answer": encode(first),
+            "layers": [encode(one) | {"utilisation": one.utilisation} for one in limited],
             "check": second and encode(second),
             "differences": [encode(one) for one in apart],
             "half_of_the_sublayers": [encode(one) for one in halved],
@@ -146,7 +150,7 @@ def solve(
         print_json(content)
     else:
         if strict:
-            _print(case, first, apart, halved)
+            _print(case, first, apart, halved, limited)
         _print_model(case, beyond, checked=second is not None)
         elements = f", finite elements {second.seconds:.1f} s" if second else ""
         total = time.perf_counter() - begin
@@ -188,6 +192,34 @@ def _answer(case: Case, source: str) -> Answer:
         raise no_result(f"{case.name}: {source}: {message_of(error)}") from None
 
 
+def _limited(case: Case, first: Answer, bars: Callable[[], Progress]) -> tuple[LayerLimit, ...]:
+    """Strain of each layer, and where it has a yield strength the load at which it begins to yield."""
+    strengths = yield_strengths(case.limits)
+    with bars() as bar:
+        task = bar.add_task("loads at which layers yield", total=1, visible=bool(strengths))
+        found = layer_limits(
+            case.problem, first, strengths, case.numerics.get(METHOD), case.residual, case.layers
+        )
+        bar.update(task, advance=1)
+    return found
+
+
+def _layer_name(case: Case, layer: LayerLimit) -> str:
+    where = with_name(layer.body, layer.where, case.names)
+    return body_label(case.problem, layer.body, where)
+
+
+def _yielding(case: Case, limited: Sequence[LayerLimit]) -> Table | None:
+    """The layers that have a yield strength; None without any."""
+    table = _table(("yielding",), ("von Mises MPa", "yield MPa", "used", "from N"))
+    for one in limited:
+        if one.yield_strength is not None and one.utilisation is not None:
+            begins = "-" if one.yields_from is None else f"{one.yields_from:.3g}"
+            stresses = (f"{stress / 1e6:.4g}" for stress in (one.von_mises, one.yield_strength))
+            table.add_row(_layer_name(case, one), *stresses, f"{one.utilisation:.0%}", begins)
+    return table if table.row_count else None
+
+
 def _halved(case: Case, first: Answer) -> tuple[Difference, ...]:
     """Differences by half of the sub-layers of graded coatings, which shows their error; () without."""
     if not case.layers:
@@ -202,7 +234,13 @@ def _table(words: Sequence[str], figures: Sequence[str]) -> Table:
     return Table(*words, *right, box=None, header_style="bold", pad_edge=False)
 
 
-def _print(case: Case, first: Answer, apart: Sequence[Difference], halved: Sequence[Difference]) -> None:
+def _print(
+    case: Case,
+    first: Answer,
+    apart: Sequence[Difference],
+    halved: Sequence[Difference],
+    limited: Sequence[LayerLimit],
+) -> None:
     besides = {"elements − this": apart, "half the sub-layers − this": halved}
     more = {head: {one.key: one for one in found} for head, found in besides.items() if found}
 
@@ -242,6 +280,8 @@ def _print(case: Case, first: Answer, apart: Sequence[Difference], halved: Seque
         "",
         "tension positive, in the plane y = 0, x along sliding, z into each body",
     )
+    if (yielding := _yielding(case, limited)) is not None:
+        print_out("", yielding, "")
 
 
 def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:
