@@ -51,8 +51,8 @@ def strain_warning(name: str, strain: float) -> tuple[str, ...]:
     if strain <= STRAIN:
         return ()
     return (
-        f"{name} is strained by {100 * strain:.2g} %, above {100 * STRAIN:g} %: beyond small strains and most "
-        "materials; check load, radius, E",
+        f"{name} is strained by {100 * strain:.2g} %, above {100 * STRAIN:g} %: beyond small strains and "
+        "most materials; check load, radius, E",
     )
 
 

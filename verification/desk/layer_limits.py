@@ -1,4 +1,4 @@
-"""Limits of each layer: the strain it bears, how near it is to yielding, the load at which it begins to yield.
+"""Limits of each layer: its strain, how near it is to yielding, the load at which it begins to yield.
 
 Yielding is judged by the largest von Mises stress of the layer, its residual stress included. Under a rising
 load that stress never falls: it is the maximum of a convex function of the contact stress, least at no load.

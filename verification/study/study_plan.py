@@ -28,7 +28,7 @@ from verification.cases.case_file import (
     TemperatureChange,
     refuse_unfit_scales,
 )
-from verification.cases.plausibility import likely_slips, residual_warnings, warnings_of
+from verification.cases.plausibility import Limits, likely_slips, residual_warnings, warnings_of
 from verification.cases.toml_file import CaseError, Poisson, Positive, Strict, Text, read_bounded, read_toml
 from verification.cases.unit_numbers import Metres, Newtons, Pascals, Units, units_of
 from verification.problem.array_types import Ball, Coatings
@@ -75,12 +75,15 @@ class Study:
     """A sphere on coatings of every modulus [Pa] and thickness [m], at every friction; SI.
 
     loads : smallest and largest [N], number for each thickness; None for ``load`` alone.
+    asked_from : smallest load of the file, where ``loads`` were extended below it.
     above, below : fixed coatings over and under the swept one.
     residual : stress [Pa] of the coating of each modulus, () for none.
     cross_check : every point whose number is a multiple is also solved by the other sources; 0 none.
     ball : None is rigid, or as of CoatedContact.
     numerics : each source's own keywords.  criteria : of the preferable thickness.  text : the file.
-    warnings : of implausible numbers, a line each.
+    source : where its numbers come from.
+    warnings : of implausible numbers, a line each.   hardness : [Pa] by the keys of the file.
+    names : of the layers that have one, by the same keys.
     """
 
     name: str
@@ -93,6 +96,7 @@ class Study:
     thicknesses: tuple[float, ...]
     frictions: tuple[float, ...]
     loads: tuple[float, float, int] | None = None
+    asked_from: float | None = None
     residual: tuple[float, ...] = ()
     ball: Ball | None = None
     above: Coatings = ()
@@ -100,8 +104,11 @@ class Study:
     cross_check: int = 10
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
     criteria: Criteria = field(default_factory=Criteria)
+    source: str = ""
     text: str = ""
     warnings: tuple[str, ...] = ()
+    hardness: Limits = field(default_factory=dict)
+    names: dict[str, str] = field(default_factory=dict)
     units: Units = field(default_factory=Units)
 
     @property
@@ -218,6 +225,21 @@ class _Problem(Sized):
         """The coating that is swept."""
         return self.coating or self.coatings[self.swept]
 
+    def limits(self) -> dict[str, float]:
+        """Hardness and yield strength [Pa] of every material that has one, by their keys."""
+        found = self.substrate.limits("substrate") | (self.coating.limits("coating") if self.coating else {})
+        for i, one in enumerate(self.coatings):
+            found |= one.limits(f"coatings.{i}")
+        return found | (self.ball.all_limits() if self.ball else {})
+
+    def names(self) -> dict[str, str]:
+        """The names that are given, by the keys of their layers."""
+        layers: dict[str, Limited | None] = {"substrate": self.substrate, "coating": self.coating}
+        layers |= {f"coatings.{i}": one for i, one in enumerate(self.coatings)} | {"ball": self.ball}
+        on_ball = self.ball.coatings if self.ball else []
+        layers |= {f"ball.coatings.{i}": one for i, one in enumerate(on_ball)}
+        return {key: one.name for key, one in layers.items() if one is not None and one.name}
+
     def held(self) -> tuple[Coatings, Coatings]:
         """The coatings above and below the swept one."""
         held = [(one.E or 0.0, one.nu, one.thickness or 0.0) for one in self.coatings]
@@ -302,6 +324,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
     """Check the content of a study file; ``path`` names it in messages. Raises CaseError."""
     text, checked = read_toml(raw, path, _StudyFile, listed=LISTED)
     p, sweep = checked.problem, checked.sweep
+    limits, criteria = p.limits(), _with_yield(path, checked)
     coatings = p.ball.coatings if p.ball else []
     if any(c.residual_stress or c.expansion for c in coatings):
         raise CaseError(
@@ -375,8 +398,11 @@ def parse_study(raw: bytes, path: Path) -> Study:
             for source in SOURCES
             if source in _StudyFile.model_fields
         },
-        criteria=checked.criteria,
+        criteria=criteria,
+        source=checked.source,
         text=text,
+        hardness={key: value for key, value in limits.items() if key.endswith("hardness")},
+        names=p.names(),
         warnings=(
             *_warnings(bare, ball, thicknesses, checked),
             *(line.replace("coatings.0", "coating") for line in residual_warnings({FLAT: residual[:1]})),
@@ -388,19 +414,41 @@ def parse_study(raw: bytes, path: Path) -> Study:
     return study
 
 
+def _with_yield(path: Path, checked: _StudyFile) -> Criteria:
+    """The criteria of a file; a yield strength of its materials is the strength of their von Mises stress.
+
+    Raises CaseError where one cannot be used, so that none is passed over.
+    """
+    p, criteria, strength = checked.problem, checked.criteria, dict(checked.criteria.strength or {})
+    modes = {"substrate": "von_mises_substrate", "coating": "von_mises_coating"}
+    for key in p.limits():
+        layer, _, name = key.rpartition(".")
+        if name != "yield_strength":
+            continue
+        where, mode = f"{path}: problem.{key}", modes.get(layer)
+        if mode is None:
+            stress = (
+                "no stress of the ball" if layer.startswith("ball") else "only the largest of all coatings"
+            )
+            raise CaseError(f"{where}: {stress} is judged in a study; leave it out, see criteria.strength")
+        if mode in strength or criteria.minimise is not None:
+            other = "minimise" if criteria.minimise is not None else f"strength.{mode}"
+            raise CaseError(f"{where}: not with criteria.{other}; give one of both")
+        strength[mode] = p.limits()[key]
+    return criteria.model_copy(update={"strength": strength or None})
+
+
 def _warnings(
     bare: CoatedContact, ball: Ball | None, thicknesses: tuple[float, ...], checked: _StudyFile
 ) -> tuple[str, ...]:
     """Those of the thinnest coating and the thickest, each line once."""
     p = checked.problem
-    limits = p.substrate.limits("substrate") | p.varied.limits("coating")
-    limits |= p.ball.all_limits() if p.ball else {}
     found = [
         line.replace("coatings.0.", "coating.")
         # A ratio has no unit.
         for E in ([p.varied.E] if p.varied.E else [p.substrate.E])
         for h in (min(thicknesses), max(thicknesses))
-        for line in warnings_of(replace(bare, coatings=((E, p.varied.nu, h),), ball=ball), limits)
+        for line in warnings_of(replace(bare, coatings=((E, p.varied.nu, h),), ball=ball))
     ]
     return (*dict.fromkeys(found), *checked.criteria.warnings())
 
