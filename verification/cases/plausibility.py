@@ -135,7 +135,7 @@ def _wide(problem: CoatedContact) -> Iterator[str]:
         cost = 100 * (sphere / (ratio**2 / 2) - 1)
         yield (
             f"contact radius a_h = {ratio:.2g} R is above {WIDEST:g} R: at the contact edge the sphere is "
-            f"{cost:.2g} % higher than the parabola that is solved"
+            f"{cost:.2g} % higher than the parabola that is solved; check load, radius, E"
         )
 
 
