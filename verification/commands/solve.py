@@ -34,9 +34,8 @@ from verification.desk.contact_answer import (
     differences,
     summary,
     usual_seconds,
-    with_name,
 )
-from verification.desk.layer_limits import LayerLimit, layer_limits, yield_strengths
+from verification.desk.layer_limits import LayerLimit, layer_limits, layer_name, yield_strengths
 from verification.desk.stack_text import body_label, conditions, described, outside_verified, stack
 from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import FLAT
@@ -114,7 +113,7 @@ def solve(
             bar.add_task("finite elements", total=1)
             second = _answer(case, SECOND)
     limited = _limited(case, first, bars)
-    late = [line for one in limited for line in one.warnings(_layer_name(case, one))]
+    late = [line for one in limited for line in one.warnings(layer_name(case, one))]
     late += beyond_limits(first.numbers["peak_pressure"][0], case.limits)
     print_warnings(late, case.name, strict=strict, silent=as_json)
     apart = differences(first, second) if second is not None else ()
@@ -204,11 +203,6 @@ def _limited(case: Case, first: Answer, bars: Callable[[], Progress]) -> tuple[L
     return found
 
 
-def _layer_name(case: Case, layer: LayerLimit) -> str:
-    where = with_name(layer.body, layer.where, case.names)
-    return body_label(case.problem, layer.body, where)
-
-
 def _yielding(case: Case, limited: Sequence[LayerLimit]) -> Table | None:
     """The layers that have a yield strength; None without any."""
     table = _table(("yielding",), ("von Mises MPa", "yield MPa", "used", "from N"))
@@ -216,7 +210,7 @@ def _yielding(case: Case, limited: Sequence[LayerLimit]) -> Table | None:
         if one.yield_strength is not None and one.utilisation is not None:
             begins = "-" if one.yields_from is None else f"{one.yields_from:.3g}"
             stresses = (f"{stress / 1e6:.4g}" for stress in (one.von_mises, one.yield_strength))
-            table.add_row(_layer_name(case, one), *stresses, f"{one.utilisation:.0%}", begins)
+            table.add_row(layer_name(case, one), *stresses, f"{one.utilisation:.0%}", begins)
     return table if table.row_count else None
 
 

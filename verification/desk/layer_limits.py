@@ -9,8 +9,11 @@ from dataclasses import dataclass, replace
 from math import exp, log
 from typing import Any
 
-from verification.cases.plausibility import as_stress, strain_warning
-from verification.desk.contact_answer import Answer, answer
+from verification.cases.case_file import Case
+from verification.cases.plausibility import as_stress, beyond_limits, strain_warning
+from verification.desk.answer_stresses import Extreme
+from verification.desk.contact_answer import Answer, answer, summary, with_name
+from verification.desk.stack_text import body_label
 from verification.problem.coated_contact import BALL, FLAT, CoatedContact
 
 NEAR = 2e-3  # of the strength: a load as near as this is found, and interpolated from there
@@ -57,6 +60,42 @@ class LayerLimit:
         if self.yields_from == 0:
             return "its residual stress alone makes it yield"
         return f"it begins to yield at {self.yields_from:.3g} N"
+
+
+@dataclass(frozen=True)
+class Designed:
+    """Largest stresses of a case with what it states beside its problem: residual stresses, limits of layers.
+
+    summary : in words.   warnings : a line for each limit that is exceeded.
+    """
+
+    summary: str
+    extremes: tuple[Extreme, ...] = ()
+    limits: tuple[LayerLimit, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+def designed(case: Case, source: str) -> Designed | None:
+    """The largest stresses of ``case`` by ``source``; None where it states no residual stress and no limit.
+
+    Raises what the source raises.
+    """
+    if not (case.residual or case.limits):
+        return None
+    if case.problem.indenter is not None:
+        return Designed("Largest stresses with residual stress, and yielding, are found under balls alone.")
+    state: dict[str, Any] = {"residual": case.residual, "layers": case.layers}
+    first = answer(case.problem, source, case.numerics.get(source), **state)
+    strengths = yield_strengths(case.limits)
+    limits = layer_limits(case.problem, first, strengths, case.numerics.get(source), **state)
+    told = [line for one in limits for line in one.warnings(layer_name(case, one)) if " yields: " in line]
+    told += beyond_limits(first.numbers["peak_pressure"][0], case.limits)
+    return Designed(summary(case.problem, first, case.names), first.extremes, limits, tuple(told))
+
+
+def layer_name(case: Case, layer: LayerLimit) -> str:
+    """The name of a layer with that of its body and its own."""
+    return body_label(case.problem, layer.body, with_name(layer.body, layer.where, case.names))
 
 
 def yield_strengths(limits: Mapping[str, float]) -> Strengths:
