@@ -9,6 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from verification.cases.graded_coating import LAYERS, Modulus, moduli
 from verification.cases.plausibility import likely_slips, residual_warnings, warnings_of
 from verification.cases.toml_file import (
+    NO_SOURCE,
     CaseError,
     Friction,
     Poisson,
@@ -247,6 +248,9 @@ class _Problem(Sized):
             bodies[BALL] = (self.ball.expansion, self.ball.coatings)
         found = {}
         for body, (below, coatings) in bodies.items():
+            if below is not None and all(c.expansion is None for c in coatings):
+                key = BALL if body == BALL else "substrate"
+                raise ValueError(f"{key}.expansion acts on no coating: give that of one, or leave it out")
             stresses = []
             for i, coating in enumerate(coatings):
                 try:
@@ -313,7 +317,7 @@ class _FemNumerics(Strict):
 
 class _CaseFile(Strict):
     title: Text
-    source: Text = "no source stated"
+    source: Text = NO_SOURCE
     problem: _Problem
     semianalytic: _SemianalyticNumerics = _SemianalyticNumerics()
     fem_reference: _FemNumerics = _FemNumerics()

@@ -13,6 +13,7 @@ MAX_BYTES = 250_000
 # 200 kB, exhaust 20 GB. A line of a case file has a few dots.
 MAX_DOTS = 250
 MAX_NAME = 100
+NO_SOURCE = "no source stated"
 
 
 class CaseError(ValueError):

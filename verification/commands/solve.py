@@ -17,6 +17,7 @@ from threadpoolctl import threadpool_limits
 
 from verification.cases.case_file import Case, default_cases, parse_case, read_case
 from verification.cases.plausibility import beyond_limits, refused
+from verification.cases.toml_file import NO_SOURCE, load_toml
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import require_format
@@ -263,6 +264,7 @@ def _print(
     print_out(
         f"[bold]{escape(case.title)}[/]",
         escape(stack(case)),
+        *(escape(line) for line in wrap(f"source: {case.source}", COLUMNS) if case.source != NO_SOURCE),
         "",
         *(escape(line) for text in said for line in wrap(text, COLUMNS)),
         "",
@@ -289,10 +291,22 @@ def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:
     if outside := outside_verified(case):
         hint = "compared here by --check" if checked else "try --check"
         print_out(escape(f"beyond the range in which both methods were compared: {outside}; {hint}"))
+    if unused := _unused(case, checked=checked):
+        print_out(escape(f"for coatcheck run: {', '.join(unused)}"))
     if case.residual:
         print_out(
             "with residual stress; the shear of an interface near a free edge of its coating is not covered"
         )
+
+
+def _unused(case: Case, *, checked: bool) -> list[str]:
+    """The tables of its file that this answer does not use."""
+    given = load_toml(case.text.encode())[1]
+    return [
+        key
+        for key in ("claim", "resolve", METHODS[1])
+        if key in given and not (checked and key == METHODS[1])
+    ]
 
 
 def _value(value: float, spread: float | None) -> str:

@@ -29,7 +29,16 @@ from verification.cases.case_file import (
     refuse_unfit_scales,
 )
 from verification.cases.plausibility import Limits, likely_slips, residual_warnings, warnings_of
-from verification.cases.toml_file import CaseError, Poisson, Positive, Strict, Text, read_bounded, read_toml
+from verification.cases.toml_file import (
+    NO_SOURCE,
+    CaseError,
+    Poisson,
+    Positive,
+    Strict,
+    Text,
+    read_bounded,
+    read_toml,
+)
 from verification.cases.unit_numbers import Metres, Newtons, Pascals, Units, units_of
 from verification.problem.array_types import Ball, Coatings
 from verification.problem.coated_contact import FLAT, CoatedContact
@@ -307,7 +316,7 @@ class _Fem(Strict):
 
 class _StudyFile(Strict):
     title: Text
-    source: Text = "no source stated"
+    source: Text = NO_SOURCE
     problem: _Problem
     sweep: _Sweep
     semianalytic: _Semianalytic = _Semianalytic()
@@ -324,12 +333,19 @@ def parse_study(raw: bytes, path: Path) -> Study:
     """Check the content of a study file; ``path`` names it in messages. Raises CaseError."""
     text, checked = read_toml(raw, path, _StudyFile, listed=LISTED)
     p, sweep = checked.problem, checked.sweep
-    limits, criteria = p.limits(), _with_yield(path, checked)
+    limits = p.limits()
+    try:
+        criteria = checked.criteria.with_yield_strengths(limits)
+    except ValueError as error:
+        raise CaseError(f"{path}: problem.{error}") from None
     coatings = p.ball.coatings if p.ball else []
-    if any(c.residual_stress or c.expansion for c in coatings):
+    if any(one.expansion for one in (p.ball, *coatings) if one) or any(c.residual_stress for c in coatings):
         raise CaseError(
-            f"{path}: problem.ball.coatings: leave residual out, for no stress of the ball is judged"
+            f"{path}: problem.ball: leave residual and expansion out, for no stress of the ball is judged"
         )
+    if p.varied.expansion is None and (p.substrate.expansion, p.temperature_change) != (None, None):
+        key = "temperature_change" if p.substrate.expansion is None else "substrate.expansion"
+        raise CaseError(f"{path}: problem.{key}: acts on no coating; give the expansion of the swept one")
     if (p.load is None) == (sweep.load is None):
         raise CaseError(f"{path}: needs exactly one of problem.load or sweep.load")
     if sweep.load is not None and len(p.coatings) > 1:
@@ -412,30 +428,6 @@ def parse_study(raw: bytes, path: Path) -> Study:
     if study.points > MOST_POINTS:
         raise CaseError(f"{path}: sweep: {study.points} points; a study has at most {MOST_POINTS}")
     return study
-
-
-def _with_yield(path: Path, checked: _StudyFile) -> Criteria:
-    """The criteria of a file; a yield strength of its materials is the strength of their von Mises stress.
-
-    Raises CaseError where one cannot be used, so that none is passed over.
-    """
-    p, criteria, strength = checked.problem, checked.criteria, dict(checked.criteria.strength or {})
-    modes = {"substrate": "von_mises_substrate", "coating": "von_mises_coating"}
-    for key in p.limits():
-        layer, _, name = key.rpartition(".")
-        if name != "yield_strength":
-            continue
-        where, mode = f"{path}: problem.{key}", modes.get(layer)
-        if mode is None:
-            stress = (
-                "no stress of the ball" if layer.startswith("ball") else "only the largest of all coatings"
-            )
-            raise CaseError(f"{where}: {stress} is judged in a study; leave it out, see criteria.strength")
-        if mode in strength or criteria.minimise is not None:
-            other = "minimise" if criteria.minimise is not None else f"strength.{mode}"
-            raise CaseError(f"{where}: not with criteria.{other}; give one of both")
-        strength[mode] = p.limits()[key]
-    return criteria.model_copy(update={"strength": strength or None})
 
 
 def _warnings(
