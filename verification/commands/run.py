@@ -140,8 +140,8 @@ def run(
         print_json(content | {"designed": {name: encode(one) for name, one in evidence.designed.items()}})
     elif not quiet:
         print_run(results, page, time.perf_counter() - begin, beside, studies)
-        for name, stated in evidence.designed.items():
-            print_out(escape(f"{name}, with what it states of its layers: {stated.summary}"))
+        for name, found_with in evidence.designed.items():
+            print_out(escape(f"{name}, with what it states of its layers: {found_with.summary}"))
     for name, lines in evidence.beyond.items():
         print_warnings(lines, name, strict=False, silent=silent)
     told = {case.name: case.warnings for case in chosen if isinstance(case, Case)}

@@ -179,7 +179,7 @@ class _Layers:
         """Each measure of the stress of a ``layer``, with its residual stress."""
         E, nu = (*self.problem.coatings, self.problem.substrate)[layer][:2]
         strain = partial(largest_strain, E=E, nu=nu)
-        of = {"sigma_1": first_principal, "von_mises": von_mises, "strain": strain}
+        of: dict[str, Measure] = {"sigma_1": first_principal, "von_mises": von_mises, "strain": strain}
         return {quantity: self._total(measure, layer) for quantity, measure in of.items()}
 
     def _graded(self, quantity: str, layers: range) -> Located:

@@ -136,7 +136,7 @@ class Criteria(Strict):
         limits : [Pa] by the keys of a file.   Raises ValueError for one by which a study judges nothing.
         """
         modes = {"substrate": "von_mises_substrate", "coating": "von_mises_coating"}
-        strength: dict[str, Any] = dict(self.strength or {})
+        strength: dict[str, Any] = {**(self.strength or {})}
         for key, value in limits.items():
             layer, _, name = key.rpartition(".")
             if name != "yield_strength":
