@@ -120,10 +120,7 @@ def _refined(
     last."""
     levels = nested.levels(half_width, indenter, body, numerics, estimate_uncertainty)
     if touches_rim(levels[-1].found.pressure, levels[-1].grid.quarter):
-        raise NotConverged(
-            f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it, or check "
-            "the moduli"
-        )
+        raise _at_rim(half_width)
     if not estimate_uncertainty:
         return levels, None
     estimate = uncertainty.of_contact(levels, indenter, body, numerics)
@@ -145,6 +142,13 @@ def _refined(
             break
         estimate = uncertainty.of_contact(levels, indenter, body, numerics)
     return levels, estimate
+
+
+def _at_rim(half_width: float) -> NotConverged:
+    return NotConverged(
+        f"the contact reaches the rim of the square, half_width = {half_width:g} m; widen it, level a tilted "
+        "profile(x, y), turn over one that is upside down (it rises away from the flat), or check the moduli"
+    )
 
 
 def _shaped(
@@ -231,6 +235,9 @@ def indent(
     body = _body(coatings, substrate, friction, ball)
     numerics = Numerics(patches, tolerance, max_iterations, conversion, threads)
     indenter = _of_profile(profile, load, approach, edge_correction)
+    heights = indenter.gap(Grid(numerics.patches, 2 * half_width / numerics.patches))
+    if heights.min() < heights[1:-1, 1:-1].min():
+        raise _at_rim(half_width)
     return _pressed(indenter, half_width, body, numerics, estimate_uncertainty)
 
 

@@ -112,6 +112,8 @@ def _remedy(text: str, command: Sequence[str]) -> str:
         return f"Try: {meant[unknown[1]]}"
     if "requires an argument" in text:
         return "Give its value, which must be above 0; a word that begins with - is read as an option."
+    if re.search(r"\d ?%", text):
+        return "Write a share without %, such as 0.15."
     if re.search(r"\d,\d", text):
         return "Write decimals with a point, such as 0.15."
     return f"Try: coatcheck {' '.join([*(one for one in command if one in COMMANDS), '--help'])}"

@@ -6,23 +6,35 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, Field, model_validator
 
-from verification.cases.graded_coating import LAYERS, Modulus, moduli
-from verification.cases.plausibility import likely_slips, residual_warnings, warnings_of
+from verification.cases.plausibility import (
+    before,
+    diameter_remark,
+    likely_slips,
+    residual_warnings,
+    warnings_of,
+)
+from verification.cases.solid_schema import (
+    BallEntry,
+    Material,
+    TemperatureChange,
+    WholeCoating,
+    in_metres,
+    limits_of,
+)
 from verification.cases.toml_file import (
     NO_SOURCE,
     CaseError,
     Friction,
-    Poisson,
-    Positive,
     Strict,
     Text,
+    place,
     read_bounded,
     read_toml,
+    spoken,
 )
-from verification.cases.unit_numbers import AnyPascals, InSI, Metres, Newtons, Pascals
+from verification.cases.unit_numbers import InSI, Metres, Newtons
 from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Claim
-from verification.problem.array_types import Ball, Coatings
 from verification.problem.coated_contact import BALL, FLAT, CoatedContact
 from verification.problem.indenter_shape import Indenter
 from verification.problem.line_profile import Line, line_of, lines_of, oblique_lines
@@ -42,6 +54,8 @@ class Case:
     warnings : of implausible numbers, a line each.   limits : hardness, yield strength [Pa] by their keys.
     residual : equibiaxial stress [Pa] of each coating by body, no part of ``problem``; {} without any.
     layers : number of sub-layers of each coating by body; {} where no coating is graded.
+    courses : E of each coating by body as it was given, "" where it is not graded; likewise {}.
+    remarks : on numbers that are likely but may be meant otherwise, a line each.
     names : those of the coatings of each body, then that of the body itself; "" where none is given.
     resolve : whether it is also solved scaled, with equal moduli, thick and thin (``invariants.resolved``).
     """
@@ -59,118 +73,13 @@ class Case:
     residual: dict[str, tuple[float, ...]] = field(default_factory=dict)
     layers: dict[str, tuple[int, ...]] = field(default_factory=dict)
     names: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    courses: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
 
     @property
     def lines(self) -> tuple[Line, ...]:
         """The lines on which sources are compared: those of the plane y = 0, then the others."""
         return lines_of(self.problem) + oblique_lines(self.problem)
-
-
-Expansion = Annotated[float, Field(ge=-1e-3, le=1e-3)]
-TemperatureChange = Annotated[float, Field(ge=-5000, le=5000)]
-
-
-class Limited(Strict):
-    """A material by ``name``, with stresses beyond which the contact is not elastic."""
-
-    name: Annotated[str, Field(min_length=1, max_length=30)] = ""
-    hardness: Pascals | None = None
-    yield_strength: Pascals | None = None
-
-    def limits(self, key: str) -> dict[str, float]:
-        """Those given [Pa], by their keys after ``key``."""
-        given = {"hardness": self.hardness, "yield_strength": self.yield_strength}
-        return {f"{key}.{name}": value for name, value in given.items() if value is not None}
-
-
-class Material(Limited):
-    """An elastic material; ``expansion`` is its coefficient of thermal expansion [1/K]."""
-
-    E: Pascals
-    nu: Poisson
-    expansion: Expansion | None = None
-
-
-class Stressed(Strict):
-    """A coating with a residual stress, given or by thermal mismatch."""
-
-    residual_stress: AnyPascals | None = None
-    expansion: Expansion | None = None
-
-    def residual(self, E: float, nu: float, below: float | None, change: float | None) -> float:
-        """Equibiaxial residual stress [Pa]: that given, or by thermal mismatch, or 0.
-
-        sigma = E/(1 - nu) (alpha_s - alpha) dT, of a thin film whose strain is that of its thick substrate.
-        L. B. Freund, S. Suresh, Thin Film Materials, Cambridge University Press, 2003, chapter 2.
-        below : expansion of the substrate alpha_s [1/K].   change : of the temperature since deposition [K].
-        Raises ValueError where both are given, or the mismatch lacks a part.
-        """
-        if self.expansion is None:
-            return self.residual_stress or 0.0
-        if self.residual_stress is not None:
-            raise ValueError("residual_stress and expansion are both given; give one")
-        if below is None or change is None:
-            raise ValueError("expansion requires that of the substrate, and problem.temperature_change")
-        return E / (1 - nu) * (below - self.expansion) * change
-
-
-class _Coating(Limited, Stressed):
-    """One coating; of a graded one E is a course over its depth, followed by ``layers`` sub-layers."""
-
-    E: Modulus
-    nu: Poisson
-    thickness: Metres | None = None
-    thickness_over_a_h: Positive | None = None
-    layers: Annotated[int, Field(ge=2, le=LAYERS)] | None = None
-
-    @model_validator(mode="after")
-    def _whole(self) -> "_Coating":
-        if (self.layers is None) != isinstance(self.E, float):
-            raise ValueError("is graded: needs E as a course over the depth, with its number of layers")
-        if (self.thickness is None) == (self.thickness_over_a_h is None):
-            raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
-        return self
-
-    def sublayers(self, over: int) -> int:
-        """Number of its sub-layers, over ``over``."""
-        return max(1, (self.layers or 1) // over)
-
-    def in_metres(self, a_h: float, over: int = 1) -> Coatings:
-        """E, nu, thickness of its sub-layers."""
-        thickness = self.thickness if self.thickness is not None else a_h * (self.thickness_over_a_h or 0.0)
-        n = self.sublayers(over)
-        # One layer keeps the number as it was given, which knows whether it had a unit.
-        return tuple((E, self.nu, thickness / n if n > 1 else thickness) for E in moduli(self.E, n))
-
-
-class BallEntry(Material):
-    """An elastic ball; its coatings from its surface inwards."""
-
-    coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
-
-    def all_limits(self) -> dict[str, float]:
-        """Hardness and yield strength [Pa] of the ball with its coatings, by their keys."""
-        return self.limits(BALL) | _limits(self.coatings, f"{BALL}.coatings")
-
-    @property
-    def bare(self) -> Ball:
-        """The ball without its coatings."""
-        return self.E, self.nu, ()
-
-    def coated(self, a_h: float, over: int = 1) -> Ball:
-        """The ball; a thickness over a_h is that over the scale of both bodies uncoated."""
-        return self.E, self.nu, _in_metres(self.coatings, a_h, over)
-
-
-def _limits(coatings: list[_Coating], key: str) -> dict[str, float]:
-    return {k: v for i, c in enumerate(coatings) for k, v in c.limits(f"{key}.{i}").items()}
-
-
-def _in_metres(coatings: list[_Coating], a_h: float, over: int = 1) -> Coatings:
-    found = tuple(layer for c in coatings for layer in c.in_metres(a_h, over))
-    if len(found) > LAYERS:
-        raise ValueError(f"coatings have {len(found)} layers; at most {LAYERS} are supported on a body")
-    return found
 
 
 class IndenterEntry(Strict):
@@ -211,7 +120,7 @@ class Sized(Strict):
     def _one_size(self) -> "Sized":
         radii = getattr(getattr(self, "indenter", None), "radii", None)
         if [self.radius, self.diameter, radii].count(None) != 2:
-            raise ValueError("needs exactly one of problem.radius or problem.diameter")
+            raise ValueError("needs exactly one of radius or diameter")
         return self
 
     @property
@@ -228,15 +137,14 @@ class _Problem(Sized):
     indenter: IndenterEntry | None = None
     friction: Friction = 0.0
     substrate: Material
-    coatings: Annotated[list[_Coating], Field(default_factory=list, max_length=50)]
+    coatings: Annotated[list[WholeCoating], Field(default_factory=list, max_length=50)]
     ball: BallEntry | None = None
     temperature_change: TemperatureChange | None = None
 
-    def layers(self, over: int = 1) -> dict[str, tuple[int, ...]]:
-        """Number of sub-layers of each coating by body; {} where no coating is graded."""
+    def graded(self) -> dict[str, list[WholeCoating]]:
+        """The coatings by body; {} where none of them is graded."""
         bodies = {FLAT: self.coatings} | ({BALL: self.ball.coatings} if self.ball else {})
-        found = {body: tuple(c.sublayers(over) for c in coatings) for body, coatings in bodies.items()}
-        return found if any(c.layers for coatings in bodies.values() for c in coatings) else {}
+        return bodies if any(c.layers for coatings in bodies.values() for c in coatings) else {}
 
     def residual(self, over: int = 1) -> dict[str, tuple[float, ...]]:
         """Residual stress [Pa] of each sub-layer of the coatings by body; {} where there is none.
@@ -254,10 +162,10 @@ class _Problem(Sized):
             stresses = []
             for i, coating in enumerate(coatings):
                 try:
-                    for E in moduli(coating.E, coating.sublayers(over)):
+                    for E in coating.moduli(over):
                         stresses.append(coating.residual(E, coating.nu, below, self.temperature_change))
                 except ValueError as error:
-                    raise ValueError(f"{'ball.' if body == BALL else ''}coatings.{i}: {error}") from None
+                    raise ValueError(f"{spoken(f'{before(body)}coatings.{i}')}: {error}") from None
             found[body] = tuple(stresses)
         return found if any(any(stresses) for stresses in found.values()) else {}
 
@@ -272,7 +180,7 @@ class _Problem(Sized):
         uncoated = ball.bare if ball else None
         bare = CoatedContact(radius, self.load, (), substrate, self.friction, uncoated, indenter)
         given = ball.coated(bare.a_h, over) if ball else None
-        return replace(bare, coatings=_in_metres(self.coatings, bare.a_h, over), ball=given)
+        return replace(bare, coatings=in_metres(self.coatings, bare.a_h, over), ball=given)
 
     def names(self) -> dict[str, tuple[str, ...]]:
         """Names of the coatings of each body, then of the body itself."""
@@ -284,7 +192,7 @@ class _Problem(Sized):
     def limits(self) -> dict[str, float]:
         """Hardness and yield strength [Pa] of every material that has one, by their keys."""
         ball = self.ball.all_limits() if self.ball else {}
-        return self.substrate.limits("substrate") | _limits(self.coatings, "coatings") | ball
+        return self.substrate.limits("substrate") | limits_of(self.coatings, "coatings") | ball
 
 
 class _Claim(Strict):
@@ -339,7 +247,7 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
     try:
         problem, residual = checked.problem.contact(over), checked.problem.residual(over)
     except (ValueError, OverflowError, ZeroDivisionError) as error:
-        raise CaseError(f"{path}: problem: {error}") from None
+        raise CaseError(f"{path}: {error}") from None
     refuse_unfit_scales(path, problem)
     problem, treated = _rigid(problem)
     if checked.resolve and not problem.coatings:
@@ -348,6 +256,7 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
     claims = _claims(path, checked, problem)
     if not claims:
         raise CaseError(f"{path}: claim: nothing is claimed of this problem, so that nothing would be judged")
+    limits, graded = checked.problem.limits(), checked.problem.graded()
     return Case(
         path.stem,
         checked.title,
@@ -357,11 +266,13 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
         numerics,
         text,
         checked.resolve,
-        (*treated, *warnings_of(problem), *residual_warnings(residual)),
-        checked.problem.limits(),
+        (*treated, *warnings_of(problem), *residual_warnings(residual, checked.problem.temperature_change)),
+        limits,
         residual,
-        checked.problem.layers(over),
+        {body: tuple(c.sublayers(over) for c in coatings) for body, coatings in graded.items()},
         checked.problem.names(),
+        {body: tuple(c.course for c in coatings) for body, coatings in graded.items()},
+        diameter_remark(checked.problem.radius),
     )
 
 
@@ -379,13 +290,13 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
     """Raise CaseError beyond the range of the parabolic sphere, of a method or of floating point."""
     a_h, R, slips = problem.a_h, problem.radius, likely_slips(problem)
     if a_h > R:
-        reason = f".load: gives a contact radius of {a_h:.3g} m on a sphere of {R:.3g} m; lower the load"
-        raise CaseError(f"{path}: problem{reason}{slips}")
+        reason = f"load: gives a contact radius of {a_h:.3g} m on a sphere of {R:.3g} m; lower the load"
+        raise CaseError(f"{path}: {reason}{slips}")
     if not 1e-12 < a_h < 1e3:
         reason = f"contact radius a_h = {a_h:.3g} m; check units of radius, load, E{slips}"
         raise CaseError(f"{path}: problem: {reason}")
     for body in problem.bodies:
-        seen, key = problem.seen_from(body), f"{path}: problem{'.ball' if body == BALL else ''}"
+        seen = problem.seen_from(body)
         for i, (_, _, h) in enumerate(seen.coatings):
             low, high = SUPPORTED
             if not low <= h / a_h <= high:
@@ -393,7 +304,8 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
                     f"{h * 1e6:.3g} um is {h / a_h:.3g} times the contact radius; both methods support "
                     f"{low:g} to {high:g}, {low * a_h * 1e6:.3g} um to {high * a_h * 1e6:.3g} um"
                 )
-                raise CaseError(f"{key}.coatings.{i}.thickness: {reason}{slips}")
+                key = spoken(f"{before(body)}coatings.{i}.thickness")
+                raise CaseError(f"{path}: {key}: {reason}{slips}")
         moduli = [*(E for E, _, _ in seen.coatings), seen.substrate[0]]
         contrast = max(moduli) / min(moduli)
         if contrast > CONTRAST:
@@ -401,7 +313,7 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact) -> None:
                 f"moduli differ {contrast:.3g} times; at most {CONTRAST:g} is supported, which is as good as "
                 "rigid; lower the largest or raise the smallest"
             )
-            raise CaseError(f"{key}: {reason}{slips}")
+            raise CaseError(f"{path}: {'ball' if body == BALL else 'problem'}: {reason}{slips}")
 
 
 def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Claim, ...]:
@@ -411,18 +323,20 @@ def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Cla
     sources = sources_of(problem)
     claims = []
     for i, claim in enumerate(checked.claim):
-        key = f"{path}: claim.{i}"
+        key = f"{path}: {place('claim', i)}"
         if claim.line != "contact":
             try:
                 line_of(claim.line, problem)
             except ValueError as error:
-                raise CaseError(f"{key}.{error}") from None
+                raise CaseError(f"{key}, {error}") from None
         if (claim.quantity, claim.line) not in known:
             fit = sorted(q for q, line in known if line == claim.line)
-            raise CaseError(f"{key}.quantity = {claim.quantity!r}; on {claim.line} there is {', '.join(fit)}")
+            raise CaseError(
+                f"{key}, quantity = {claim.quantity!r}; on {claim.line} there is {', '.join(fit)}"
+            )
         first, second = claim.between
         if first == second or not {first, second} <= set(sources):
-            raise CaseError(f"{key}.between = {claim.between}; give two of {', '.join(sources)}")
+            raise CaseError(f"{key}, between = {claim.between}; give two of {', '.join(sources)}")
         claims.append(Claim(claim.quantity, claim.line, (first, second), claim.cap, claim.why, claim.edge))
     return tuple(claims)
 

@@ -27,6 +27,11 @@ class Course(Strict):
     top: Pascals
     base: Pascals
 
+    @property
+    def words(self) -> str:
+        """The course in words: "130 to 300 GPa, linear"."""
+        return f"{self.top / 1e9:.4g} to {self.base / 1e9:.4g} GPa, {self.course}"
+
 
 class Table(Strict):
     """Moduli ``E`` [Pa] at shares ``depth`` of the thickness, from 0 at the surface of the coating to 1."""
@@ -42,6 +47,11 @@ class Table(Strict):
         if (self.depth[0], self.depth[-1]) != (0, 1) or np.diff(self.depth).min() <= 0:
             raise ValueError("has depths that do not rise from 0 to 1")
         return self
+
+    @property
+    def words(self) -> str:
+        """The table in words: "130 to 300 GPa, 3 depths"."""
+        return f"{self.E[0] / 1e9:.4g} to {self.E[-1] / 1e9:.4g} GPa, {len(self.E)} depths"
 
 
 def _kind(given: Any) -> str:

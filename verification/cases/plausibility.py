@@ -7,6 +7,7 @@ names that unit: E = 210 is meant in GPa.
 import sys
 from collections.abc import Iterator, Mapping
 
+from verification.cases.toml_file import spoken
 from verification.cases.unit_numbers import InSI
 from verification.problem.coated_contact import BALL, CoatedContact
 
@@ -17,6 +18,7 @@ LARGEST_RADIUS = 1.0  # m
 WIDEST = 0.1  # a_h / R
 THICKEST = 20.0  # h / a_h; beyond it the substrate has no part in the contact
 COATING = 1e-3  # m, thicker than coatings are
+BALLS = (1, 2, 3, 4, 5, 6, 6.35, 8, 9.525, 10, 12.7)  # mm, usual diameters in tribometers
 STRAIN = 0.05  # of a layer, beyond which strains are not small
 THINNER = 0.2  # of the layer below it: an interlayer, that hardly lies at the surface
 RESIDUAL = (1e6, 2e10)  # Pa, magnitude of a residual stress
@@ -40,7 +42,7 @@ def refused(problem: CoatedContact) -> tuple[str, ...]:
 def beyond_limits(p0: float, limits: Limits) -> tuple[str, ...]:
     """A line for each hardness that the peak pressure ``p0`` [Pa] of a solved contact exceeds."""
     return tuple(
-        f"peak pressure {as_stress(p0)} is beyond {key} = {as_stress(value)}: not elastic"
+        f"peak pressure {as_stress(p0)} is beyond {spoken(key)} = {as_stress(value)}: not elastic"
         for key, value in limits.items()
         if key.endswith("hardness") and p0 > value
     )
@@ -56,13 +58,34 @@ def strain_warning(name: str, strain: float) -> tuple[str, ...]:
     )
 
 
-def residual_warnings(residual: Mapping[str, tuple[float, ...]]) -> tuple[str, ...]:
-    """A line for each residual stress [Pa] below 1 MPa or above 20 GPa in magnitude."""
+def diameter_remark(radius: float | None) -> tuple[str, ...]:
+    """A line where a ``radius`` given with a unit is a usual diameter of balls, but its double is none."""
+    usual = [any(abs(1e3 * size - one) < 1e-6 for one in BALLS) for size in (radius or 0, 2 * (radius or 0))]
+    if not isinstance(radius, InSI) or usual != [True, False]:
+        return ()
+    size = f"{1e3 * radius:g} mm"
+    return (f'{size} is a usual diameter of balls; if it is yours, give "d = {size}", in a file diameter',)
+
+
+def residual_warnings(
+    residual: Mapping[str, tuple[float, ...]], change: float | None = None
+) -> tuple[str, ...]:
+    """A line for each residual stress [Pa] below 1 MPa or above 20 GPa in magnitude, or from heating.
+
+    change : of the temperature since deposition [K].
+    """
     found = []
+    worst = max((one for stresses in residual.values() for one in stresses), key=abs, default=0.0)
+    if change is not None and change > 0 and worst:
+        state = f"{as_stress(abs(worst))} of {'tension' if worst > 0 else 'compression'}"
+        found.append(
+            f"temperature_change = {change:g} K, a heating since deposition, gives the coating {state}; "
+            f"cooling from deposition is negative, {-change:g}"
+        )
     for body, stresses in residual.items():
         for i, value in enumerate(stresses):
             if value and not RESIDUAL[0] <= abs(value) <= RESIDUAL[1]:
-                key = f"{_before(body)}coatings.{i}.residual_stress"
+                key = spoken(f"{before(body)}coatings.{i}.residual_stress")
                 slip = "; check its unit"
                 if not isinstance(value, InSI) and abs(value) < 1e5:
                     slip = f"; {key} = {value:g} looks like {'GPa' if abs(value) < 50 else 'MPa'}"
@@ -73,6 +96,8 @@ def residual_warnings(residual: Mapping[str, tuple[float, ...]]) -> tuple[str, .
 def likely_slips(problem: CoatedContact) -> str:
     """ "; KEY = NUMBER looks like UNIT" for what a refusal may come from; "" where nothing looks so."""
     slips = [line.split("; ")[-1] for line in (*_numbers(problem), *_thick(problem)) if LIKELY in line]
+    if isinstance(problem.load, InSI) and problem.load.unit == "MN":
+        slips.insert(0, "load in MN, meganewtons, looks like mN")
     return "".join(f"; {slip}" for slip in slips[:2])
 
 
@@ -83,15 +108,16 @@ def _numbers(problem: CoatedContact) -> Iterator[str]:
             "radius", problem.radius, _LENGTH_UNITS, (1e-5, LARGEST_RADIUS), prefer="mm"
         )
     for body in problem.bodies:
-        seen, of = problem.seen_from(body), _before(body)
+        seen, of = problem.seen_from(body), before(body)
         moduli = {f"{of}coatings.{i}.E": E for i, (E, _, _) in enumerate(seen.coatings)}
         base = f"{of}E" if body == BALL else "substrate.E"
         for key, E in {base: seen.substrate[0], **moduli}.items():
+            key = spoken(key)
             if not MODULI[0] <= E <= MODULI[1]:
                 which = "below 1 MPa" if MODULI[0] > E else "above 2 TPa"
                 yield f"{key} = {E:g} Pa is {which}" + _slip(key, E, _MODULUS_UNITS, USUAL_MODULI)
         for i, (_, _, h) in enumerate(seen.coatings):
-            key = f"{of}coatings.{i}.thickness"
+            key = spoken(f"{of}coatings.{i}.thickness")
             slip = _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
             if h > problem.radius:
                 yield f"{key} = {h:g} m is beyond the radius of the ball, {problem.radius:g} m" + slip
@@ -102,7 +128,7 @@ def _thick(problem: CoatedContact) -> Iterator[str]:
     a_h = problem.a_h or sys.float_info.min  # below which floating point has nothing
     for body in problem.bodies:
         for i, (_, _, h) in enumerate(problem.seen_from(body).coatings):
-            key = f"{_before(body)}coatings.{i}.thickness"
+            key = spoken(f"{before(body)}coatings.{i}.thickness")
             if h > problem.radius or h <= min(THICKEST * a_h, COATING):
                 continue
             reason = f"is {h / a_h:.3g} contact radii; what lies below has no part"
@@ -120,9 +146,9 @@ def _order(problem: CoatedContact) -> Iterator[str]:
         (E, _, h), (E_below, _, h_below) = coatings
         ratio = h / h_below
         if ratio < THINNER and E_below != E:
-            of = _before(body)
+            of = "ball, " if body == BALL else ""
             yield (
-                f"{of}coatings.0, at the surface, has {ratio:.2g} of the thickness of {of}coatings.1 below "
+                f"{of}coating 1, at the surface, has {ratio:.2g} of the thickness of {of}coating 2 below "
                 "it; coatings are listed from the surface down"
             )
 
@@ -151,8 +177,8 @@ def _slip(
     return "; check its unit"
 
 
-def _before(body: str) -> str:
-    """Beginning of the keys of a body."""
+def before(body: str) -> str:
+    """Beginning of the dotted keys of a body."""
     return f"{BALL}." if body == BALL else ""
 
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from verification.cases.published_schema import ColumnEntry, PositionEntry, TableEntry
 from verification.cases.toml_file import CaseError
+from verification.cases.unit_numbers import FORCES, LENGTHS, STRESSES
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import PrescribedLoad
 from verification.problem.evaluation_points import Points
@@ -29,11 +30,8 @@ from verification.sources.source_registry import PUBLISHED
 FOLDER = Path(__file__).parent / "shipped" / "published"
 MAX_BYTES = 1_000_000
 
-INCH, PSI = 0.0254, 6894.757293168361
-_STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "psi": PSI, "ksi": 1e3 * PSI}
-_LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "in": INCH}
 # SI value of each unit of a table.
-UNITS = _STRESSES | _LENGTHS | {"N": 1.0, "1": 1.0, "microstrain": 1e-6}
+UNITS = STRESSES | LENGTHS | FORCES | {"1": 1.0, "microstrain": 1e-6}
 CEILING = 0.01  # largest uncertainty of a cell as a fraction of the scale, unless the case file states why
 DEPARTURE = "_departure"  # a column of this ending lists the departures of the column named before it
 RECOMPUTED = "recomputed"  # value of ``seen`` for tables that the source does not print

@@ -35,6 +35,7 @@ from verification.desk.contact_answer import (
     differences,
     summary,
     usual_seconds,
+    with_slicing,
 )
 from verification.desk.layer_limits import LayerLimit, layer_limits, layer_name, yield_strengths
 from verification.desk.stack_text import body_label, conditions, described, outside_verified, stack
@@ -103,8 +104,10 @@ def solve(
     with bars() as bar:
         task = bar.add_task("semi-analytical", total=1 + bool(case.layers))
         first = _answer(case, METHOD)
-        bar.update(task, advance=1, description="half of the sub-layers")
-        halved = _halved(case, first)
+        bar.update(task, advance=1, description="fewer sub-layers")
+        coarser = _coarser(case)
+        halved = differences(first, coarser[0]) if coarser else ()
+        stated = with_slicing(first, coarser)
         bar.update(task, advance=bool(case.layers))
     second = None
     if check:
@@ -119,7 +122,7 @@ def solve(
     print_warnings(late, case.name, strict=strict, silent=as_json)
     apart = differences(first, second) if second is not None else ()
     if not (as_json or strict):
-        _print(case, first, apart, halved, limited)
+        _print(case, stated, apart, halved, limited)
     with bars() as bar:
         task = bar.add_task("error of the model", total=1)
         beyond = model_error(case.problem)
@@ -131,7 +134,7 @@ def solve(
         from verification.desk.section_field import section
 
         title = f"{stack(case)}\n{conditions(case.problem)}"
-        write(first, title, plot, section(case.problem, case.residual), case.names)
+        write(stated, title, plot, section(case.problem, case.residual), case.names)
     if as_json:
         content = {  # in SI; NaN of a place that does not exist as text
             "title": case.title,
@@ -140,8 +143,9 @@ def solve(
             "residual_stress": case.residual,
             "case_file": case.text,
             "warnings": [*case.warnings, *late, *costs],
+            "remarks": case.remarks,
             "model_error": {"message": beyond.message(), **encode(beyond)},
-            "answer": encode(first),
+            "answer": encode(stated),
             "layers": [encode(one) | {"utilisation": one.utilisation} for one in limited],
             "check": second and encode(second),
             "differences": [encode(one) for one in apart],
@@ -150,7 +154,7 @@ def solve(
         print_json(content)
     else:
         if strict:
-            _print(case, first, apart, halved, limited)
+            _print(case, stated, apart, halved, limited)
         _print_model(case, beyond, checked=second is not None)
         elements = f", finite elements {second.seconds:.1f} s" if second else ""
         total = time.perf_counter() - begin
@@ -215,12 +219,10 @@ def _yielding(case: Case, limited: Sequence[LayerLimit]) -> Table | None:
     return table if table.row_count else None
 
 
-def _halved(case: Case, first: Answer) -> tuple[Difference, ...]:
-    """Differences by half of the sub-layers of graded coatings, which shows their error; () without."""
-    if not case.layers:
-        return ()
-    half = parse_case(case.text.encode(), Path(case.name), over=2)
-    return differences(first, _answer(half, METHOD))
+def _coarser(case: Case) -> tuple[Answer, ...]:
+    """Answers with half and a quarter of the sub-layers of graded coatings; () without any."""
+    overs = (2, 4) if case.layers else ()
+    return tuple(_answer(parse_case(case.text.encode(), Path(case.name), over), METHOD) for over in overs)
 
 
 def _table(words: Sequence[str], figures: Sequence[str]) -> Table:
@@ -278,6 +280,8 @@ def _print(
     )
     if (yielding := _yielding(case, limited)) is not None:
         print_out("", yielding, "")
+    if halved:
+        print_out("± contains the slicing: at least the change by half the sub-layers, in the plane thrice")
 
 
 def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:

@@ -2,18 +2,30 @@
 
 ball "10 mm" or "10 mm, 210 GPa, 0.3" (radius; of an elastic ball E, nu), coating "3 um, 450 GPa, 0.22"
 (thickness, E, nu), substrate "210 GPa, 0.3"; bare numbers are SI. "d = 20 mm" is a diameter, and a name may
-come before the first number of a solid: "DLC 3 um, 450 GPa, 0.22", "100Cr6 210 GPa, 0.3". The reader of case
-files checks them: both have the same limits, units, messages.
+come first: "DLC 3 um, 450 GPa, 0.22", "M2 HSS 60 HRC 220 GPa, 0.3", "100Cr6 d = 6 mm, 210 GPa, 0.3". The
+reader of case files checks the numbers: both have the same limits, units, messages.
 """
 
 import json
 import re
 from collections.abc import Sequence
 
-_SIZE = re.compile(r"(d|D|diameter|r|R|radius)\s*=?\s*([\d.+-].*)")
-# words with a letter in each, before a number: DLC, 100Cr6, a-C:H, tool steel
-_NAMED = re.compile(r"\s*((?:(?=[\w.:/-]*[^\W\d_])[\w.:/-]+\s+)+)(?=[\d.+-])")
+from verification.cases.unit_numbers import NUMBER
+
+_D, _R = r"d|D|dia\.?|diam\.?|diameter|Ø|ø|⌀", r"r|R|radius"
+_VALUE = rf"{NUMBER}\s*(?:[^\W\d_]\S*)?"
+_SIZE = rf"(?:(?:{_D}|{_R})\s*=?\s*)?{_VALUE}(?:\s+(?:{_D}|{_R}))?"
+_SIZED = re.compile(rf"({_D}|{_R})?\s*=?\s*({_VALUE}?)(?:\s+({_D}|{_R}))?")
+_NAMED = re.compile(rf"(.*?\S)[\s:]+({_SIZE})")
+# A name does not begin with a number, but for that of a steel, 1.3505; nor does it hold a size.
+_NO_NAME = re.compile(rf"(?!1\.\d{{4}}\b)[+-]?[\d.,]+(?:\s|$)|.*\b{NUMBER} ?(?:[numk]?m|µm|[kMGT]?Pa)\b")
 _COMMA = re.compile(r"\d,\d")
+FORMS = {
+    "--ball": ("radius", "E", "nu", "100Cr6 d = 6 mm, 210 GPa, 0.3"),
+    "--coating": ("thickness", "E", "nu", "DLC 3 um, 450 GPa, 0.22"),
+    "--ball-coating": ("thickness", "E", "nu", "DLC 3 um, 450 GPa, 0.22"),
+    "--substrate": ("E", "nu", "100Cr6 210 GPa, 0.3"),
+}
 
 
 def case_text(
@@ -28,14 +40,15 @@ def case_text(
 
     Raises ValueError where the number of words is wrong, naming the option.
     """
-    words, coated = ball.split(","), ", ".join(_coating("--ball-coating", text) for text in on_ball)
-    elastic = ""
-    if len(words) > 1 or on_ball:
-        _, E, nu = _parts("--ball", ball, ("radius", "E", "nu"))
-        elastic = f"ball = {{ E = {E}, nu = {nu}, coatings = [{coated}] }}\n"
-    key, size = _size(words[0])
-    called, solid = _named(substrate)
-    E, nu = _parts("--substrate", solid, ("E", "nu"))
+    coated, elastic = ", ".join(_coating("--ball-coating", text) for text in on_ball), ""
+    key, size = _size(ball)
+    if "," in ball or on_ball or _named(ball.strip())[0]:
+        called, (size, *solid) = _solid("--ball", ball)
+        E, nu = map(_toml, solid)
+        elastic = f"ball = {{ {called}E = {E}, nu = {nu}, coatings = [{coated}] }}\n"
+        key, size = _size(size)
+    called, solid = _solid("--substrate", substrate)
+    E, nu = map(_toml, solid)
     on = ", ".join(_coating("--coating", text) for text in coatings)
     return (
         'title = "From the command line"\n[problem]\n'
@@ -46,31 +59,40 @@ def case_text(
 
 def _size(word: str) -> tuple[str, str]:
     """The key of a ball's size with its value: "d = 20 mm" is a diameter, "R = 10 mm" or "10 mm" a radius."""
-    found = _SIZE.fullmatch(word.strip())
+    found = _SIZED.fullmatch(word.strip())
     if found is None:
         return "radius", word
-    return ("diameter" if found[1].lower().startswith("d") else "radius"), found[2]
+    said = found[1] or found[3] or "r"
+    return ("diameter" if re.fullmatch(_D, said) else "radius"), found[2]
 
 
-def _named(text: str) -> tuple[str, str]:
-    """The entry of a name that comes before the first number, with the text behind it."""
-    found = _NAMED.match(text)
-    return (f"name = {json.dumps(found[1].strip())}, ", text[found.end() :]) if found else ("", text)
+def _named(word: str) -> tuple[str, str]:
+    """A name that comes before the last number of a word, with that number; "" where there is none."""
+    found = None if re.fullmatch(_SIZE, word) else _NAMED.fullmatch(word)
+    name = found[1].rstrip(" :") if found else ""
+    return (name, found[2]) if found and not _NO_NAME.match(name) else ("", word)
 
 
 def _coating(option: str, text: str) -> str:
-    called, solid = _named(text)
-    thickness, E, nu = _parts(option, solid, ("thickness", "E", "nu"))
+    called, solid = _solid(option, text)
+    thickness, E, nu = map(_toml, solid)
     return f"{{ {called}thickness = {thickness}, E = {E}, nu = {nu} }}"
 
 
-def _parts(option: str, text: str, names: tuple[str, ...]) -> list[str]:
-    """The parts of ``text`` between commas as TOML values."""
-    words = text.split(",")
+def _solid(option: str, text: str) -> tuple[str, list[str]]:
+    """The entry of a name, "" without, and the words between the commas."""
+    *names, example = FORMS[option]
+    words = [word.strip() for word in text.split(",")]
+    name, words[0] = _named(words[0])
+    if not name and len(words) == len(names) + 1 and not re.match(NUMBER + r"(?!\w)", words[0]):
+        name = words.pop(0).rstrip(":")
     if len(words) != len(names):
+        form = f'give {", ".join(names)}, {len(names)} parts, such as "{example}"'
         comma = "; write decimals with a point, such as 0.3" if _COMMA.search(text) else ""
-        raise ValueError(f'{option} "{text}": give {", ".join(names)}, {len(names)} parts{comma}')
-    return [_toml(word) for word in words]
+        more = "" if comma or len(words) < 4 else "; a residual stress goes into a case file"
+        raise ValueError(f'{option} "{text}": {form}{comma}{more}')
+    called = f"name = {json.dumps(name, ensure_ascii=False)}, " if name else ""
+    return called, words
 
 
 def _toml(word: str) -> str:

@@ -1,8 +1,9 @@
 """Answer to one problem: contact size, largest stresses, a sentence, differences from a second method."""
 
 import time
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from verification.desk.answer_stresses import Course, Extreme, stresses
 from verification.problem.coated_contact import FLAT, CoatedContact
 from verification.problem.quantity import QUANTITIES, SCALARS
+from verification.running.slicing import sliced
 from verification.sources.source_registry import solvers
 
 # Measured on one core of 2.5 GHz, an elastic ball with two thin films within 5 %.
@@ -79,6 +81,24 @@ def differences(first: Answer, second: Answer) -> tuple[Difference, ...]:
     return tuple(
         Difference(key, b - a, abs(b - a) <= U_a + U_b) for key, ((a, U_a), (b, U_b)) in pairs.items()
     )
+
+
+def with_slicing(found: Answer, coarser: Sequence[Answer]) -> Answer:
+    """An answer for graded coatings with the uncertainty of their slicing added to those of the numbers.
+
+    coarser : with half and with a quarter of the sub-layers; () where no coating is graded.
+    """
+    changes = [differences(*pair) for pair in pairwise((found, *coarser))]
+    by = {one.key: sliced(one.value, before.value, one.key) for one, before in zip(*changes, strict=True)}
+    numbers = {
+        name: (value, None if stated is None else stated + by.get((name,), 0.0))
+        for name, (value, stated) in found.numbers.items()
+    }
+    extremes = tuple(
+        replace(at, uncertainty=at.uncertainty + by.get((at.body, at.quantity, at.where), 0.0))
+        for at in found.extremes
+    )
+    return replace(found, numbers=numbers, extremes=extremes)
 
 
 def usual_seconds(problem: CoatedContact) -> float:

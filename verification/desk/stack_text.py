@@ -32,7 +32,8 @@ def _layers(case: Case, body: str) -> list[str]:
     names, found = case.names.get(body, ()), []
     for i, layers in enumerate(_coatings(case.problem.seen_from(body), case.layers.get(body))):
         name = names[i] if i < len(names) else ""
-        found.append(_thickness(layers, name) + ("" if name else f" of {_gpa(layers[0][0])}"))
+        E = _course(case, body, i) or _gpa(layers[0][0])
+        found.append(_thickness(layers, name) + ("" if name else f" of {E.partition(',')[0]}"))
     return found
 
 
@@ -47,15 +48,16 @@ def described(case: Case) -> list[str]:
         for i, layers in enumerate(_coatings(seen, case.layers.get(body)), start=1):
             on, n = "coating" if body == FLAT else f"on the {BALL}", len(layers)
             stress = sorted(case.residual[body][begin : begin + n]) if case.residual else [0.0]
-            (E, nu, _), last = layers[0], layers[-1][0]
-            course = f", E to {_gpa(last)} in {n} sub-layers" if n > 1 else ""
+            E, nu, _ = layers[0]
+            given = _course(case, body, i - 1)
+            solid = f"E = {given}, as {n} sub-layers, nu = {nu:g}" if given else _solid(E, nu)
             more = f", residual stress {_range(stress[0] / 1e6, stress[-1] / 1e6)} MPa" if any(stress) else ""
             thickness = _thickness(layers, names[i - 1] if names else "")
-            lines.append(f"{on} {i}   "[:12] + f"{thickness}, {_solid(E, nu)}{course}{more}")
+            lines.append(f"{on} {i}   "[:12] + f"{thickness}, {solid}{more}")
             begin += n
         if body == FLAT:
             lines.append(f"substrate   {_solid(*seen.substrate)}")
-    return lines
+    return [*lines, *(f"remark      {line}" for line in case.remarks)]
 
 
 def conditions(problem: CoatedContact) -> str:
@@ -109,6 +111,11 @@ def _coatings(
 def _thickness(layers: tuple[tuple[float, float, float], ...], name: str) -> str:
     """The thickness of a coating after its name: "DLC 2 um"."""
     return f"{name} {sum(h for *_, h in layers) * 1e6:.4g} um".strip()
+
+
+def _course(case: Case, body: str, coating: int) -> str:
+    """E of a graded coating as it was given; "" of any other."""
+    return case.courses.get(body, ("",) * (coating + 1))[coating]
 
 
 def _solid(E: float, nu: float) -> str:

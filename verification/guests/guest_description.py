@@ -13,16 +13,13 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from verification.cases.toml_file import Strict, Text, read_bounded, read_toml
-from verification.cases.unit_numbers import Seconds
+from verification.cases.unit_numbers import FORCES, LENGTHS, STRESSES, Seconds
 from verification.judging.verdict import Claim
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import QUANTITIES
 from verification.sources.source_registry import SOURCES
 
 FILE = "guest.toml"
-LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "nm": 1e-9}
-STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9}
-FORCES = {"N": 1.0, "mN": 1e-3, "uN": 1e-6, "kN": 1e3}
 _PLACE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
 
 Word = Annotated[str, Field(min_length=1, max_length=1000)]
@@ -47,9 +44,9 @@ class Supports(Strict):
 class Units(Strict):
     """Units of the code; numbers are converted on the way to it and back."""
 
-    length: Literal["m", "mm", "um", "nm"] = "m"
-    stress: Literal["Pa", "kPa", "MPa", "GPa"] = "Pa"
-    force: Literal["N", "mN", "uN", "kN"] = "N"
+    length: Literal["m", "mm", "um", "nm", "inch", "in"] = "m"
+    stress: Literal["Pa", "kPa", "MPa", "GPa", "psi", "ksi"] = "Pa"
+    force: Literal["N", "mN", "uN", "kN", "lbf"] = "N"
 
 
 class GuestFile(Strict):

@@ -38,6 +38,7 @@ class CaseResult:
     invariants : of each solution by itself.   warnings : of implausible input, and of strains that are not
     small, a line each.   stated : what a case says of its layers that is no part of the problem: names,
     residual stresses, limits, numbers of sub-layers, as in ``Case``; empty where it says nothing.
+    remarks : on the input and on what its uncertainties leave out, a line each.
     """
 
     name: str
@@ -53,6 +54,7 @@ class CaseResult:
     invariants: tuple[Invariant, ...] = ()
     warnings: tuple[str, ...] = ()
     stated: dict[str, Any] = field(default_factory=dict)
+    remarks: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, case: Any, **parts: Any) -> "CaseResult":

@@ -20,6 +20,7 @@ from verification.running.contact_run import judge_case, solve_case
 from verification.running.json_records import plain
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import fingerprint
+from verification.running.slicing import slicing_remarks
 from verification.running.stored_fields import (
     confirm_fields,
     plane_path,
@@ -77,7 +78,8 @@ def solve_and_store(case: Case, path: Path, plane: Path, directory: Path | None 
     result = judge_case(case, solved)
     drawn = sample_plane(case.problem.interfaces, solved.solutions)
     checked = plane_invariants(drawn, solved.solutions, case.problem)
-    result = replace(result, invariants=(*result.invariants, *checked))
+    remarks = (*case.remarks, *slicing_remarks(case, solved.solutions, _solvers()))
+    result = replace(result, invariants=(*result.invariants, *checked), remarks=remarks)
     # The result comes last: where it lies, all that belongs to it does.
     write_plane(plane, drawn, case.text)
     if directory is not None:

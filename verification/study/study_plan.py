@@ -18,28 +18,18 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from verification.cases.case_file import (
-    SUPPORTED,
+from verification.cases.case_file import SUPPORTED, Sized, refuse_unfit_scales
+from verification.cases.plausibility import Limits, likely_slips, residual_warnings, warnings_of
+from verification.cases.solid_schema import (
     BallEntry,
+    Coating,
     Limited,
     Material,
-    Sized,
-    Stressed,
     TemperatureChange,
-    refuse_unfit_scales,
+    in_metres,
 )
-from verification.cases.plausibility import Limits, likely_slips, residual_warnings, warnings_of
-from verification.cases.toml_file import (
-    NO_SOURCE,
-    CaseError,
-    Poisson,
-    Positive,
-    Strict,
-    Text,
-    read_bounded,
-    read_toml,
-)
-from verification.cases.unit_numbers import Metres, Newtons, Pascals, Units, units_of
+from verification.cases.toml_file import NO_SOURCE, CaseError, Positive, Strict, Text, read_bounded, read_toml
+from verification.cases.unit_numbers import Metres, Newtons, Units, units_of
 from verification.problem.array_types import Ball, Coatings
 from verification.problem.coated_contact import FLAT, CoatedContact
 from verification.running.json_records import plain
@@ -49,7 +39,6 @@ from verification.study.solve_cache import solve_key
 from verification.study.study_table import SOURCES
 
 STUDIES = Path(__file__).parent.parent / "cases" / "shipped" / "studies"
-LISTED = 10  # errors of a file in one message
 MOST_POINTS = 1_000_000
 
 
@@ -85,7 +74,8 @@ class Study:
 
     loads : smallest and largest [N], number for each thickness; None for ``load`` alone.
     asked_from : smallest load of the file, where ``loads`` were extended below it.
-    above, below : fixed coatings over and under the swept one.
+    above, below : fixed coatings over and under the swept one.   halved : those and the ball with half of the
+    sub-layers of graded coatings, whose change is part of every uncertainty; {} where none is graded.
     residual : stress [Pa] of the coating of each modulus, () for none.
     cross_check : every point whose number is a multiple is also solved by the other sources; 0 none.
     ball : None is rigid, or as of CoatedContact.
@@ -110,6 +100,7 @@ class Study:
     ball: Ball | None = None
     above: Coatings = ()
     below: Coatings = ()
+    halved: dict[str, Any] = field(default_factory=dict)
     cross_check: int = 10
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
     criteria: Criteria = field(default_factory=Criteria)
@@ -179,6 +170,7 @@ class Study:
                     "substrate": list(self.substrate),
                     "ball": plain(self.ball),
                     "frictions": list(self.frictions),
+                    **({"halved": self.halved} if self.halved else {}),
                 }
                 yield Solve(first, request, places)
             first += step
@@ -196,41 +188,34 @@ def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...
 Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
-class _Coating(Limited, Stressed):
-    E: Pascals | None = None
-    nu: Poisson
-
-
-class _Layer(_Coating):
-    thickness: Metres | None = None
-
-
 class _Problem(Sized):
     load: Newtons | None = None
     substrate: Material
-    coating: _Coating | None = None
-    coatings: Annotated[list[_Layer], Field(default_factory=list, max_length=10)]
+    coating: Coating | None = None
+    coatings: Annotated[list[Coating], Field(default_factory=list, max_length=10)]
     ball: BallEntry | None = None
     temperature_change: TemperatureChange | None = None
 
     @model_validator(mode="after")
     def _one_swept(self) -> "_Problem":
         if (self.coating is None) == (not self.coatings):
-            raise ValueError("needs exactly one of problem.coating or problem.coatings")
-        for i, one in enumerate(self.coatings):
-            if i != self.swept and (one.E is None or one.residual_stress or one.expansion):
-                raise ValueError(f"problem.coatings.{i} is not swept: give E, and no residual stress")
-        if sum(one.thickness is None for one in self.coatings) != bool(self.coatings):
-            raise ValueError("problem.coatings: give every thickness but that of the coating to be swept")
+            raise ValueError("needs exactly one of coating or coatings")
+        for i, one in enumerate(self.coatings, start=1):
+            if one.is_sized and (one.E is None or one.residual_stress or one.expansion):
+                raise ValueError(f"has coating {i}, which is not swept: give its E, and no residual stress")
+        if sum(not one.is_sized for one in self.coatings) != bool(self.coatings):
+            raise ValueError("needs every thickness of its coatings but that of the one to be swept")
+        if self.varied.layers or self.varied.is_sized:
+            raise ValueError("has a swept coating: leave out its thickness and layers, give one E or none")
         return self
 
     @property
     def swept(self) -> int:
         """Number of the coating that is swept."""
-        return next((i for i, one in enumerate(self.coatings) if one.thickness is None), 0)
+        return next((i for i, one in enumerate(self.coatings) if not one.is_sized), 0)
 
     @property
-    def varied(self) -> _Coating:
+    def varied(self) -> Coating:
         """The coating that is swept."""
         return self.coating or self.coatings[self.swept]
 
@@ -249,10 +234,19 @@ class _Problem(Sized):
         layers |= {f"ball.coatings.{i}": one for i, one in enumerate(on_ball)}
         return {key: one.name for key, one in layers.items() if one is not None and one.name}
 
-    def held(self) -> tuple[Coatings, Coatings]:
-        """The coatings above and below the swept one."""
-        held = [(one.E or 0.0, one.nu, one.thickness or 0.0) for one in self.coatings]
-        return tuple(held[: self.swept]), tuple(held[self.swept + 1 :])
+    @property
+    def modulus(self) -> float | None:
+        """E of the coating that is swept; None where it is swept too."""
+        return self.varied.E if isinstance(self.varied.E, float) else None
+
+    def held(self, a_h: float, over: int = 1) -> tuple[Coatings, Coatings]:
+        """The coatings above and below the swept one; ``over`` divides the number of sub-layers."""
+        above, below = self.coatings[: self.swept], self.coatings[self.swept + 1 :]
+        return in_metres(above, a_h, over), in_metres(below, a_h, over)
+
+    def graded(self) -> bool:
+        """Whether a coating beside the swept one is graded."""
+        return any(one.layers for one in (*self.coatings, *(self.ball.coatings if self.ball else ())))
 
 
 Lengths = Annotated[list[Metres], Field(min_length=1, max_length=100_000)]
@@ -331,7 +325,7 @@ def read_study_file(path: Path) -> Study:
 
 def parse_study(raw: bytes, path: Path) -> Study:
     """Check the content of a study file; ``path`` names it in messages. Raises CaseError."""
-    text, checked = read_toml(raw, path, _StudyFile, listed=LISTED)
+    text, checked = read_toml(raw, path, _StudyFile)
     p, sweep = checked.problem, checked.sweep
     limits = p.limits()
     try:
@@ -341,13 +335,13 @@ def parse_study(raw: bytes, path: Path) -> Study:
     coatings = p.ball.coatings if p.ball else []
     if any(one.expansion for one in (p.ball, *coatings) if one) or any(c.residual_stress for c in coatings):
         raise CaseError(
-            f"{path}: problem.ball: leave residual and expansion out, for no stress of the ball is judged"
+            f"{path}: ball: leave residual and expansion out, for no stress of the ball is judged"
         )
     if p.varied.expansion is None and (p.substrate.expansion, p.temperature_change) != (None, None):
         key = "temperature_change" if p.substrate.expansion is None else "substrate.expansion"
-        raise CaseError(f"{path}: problem.{key}: acts on no coating; give the expansion of the swept one")
+        raise CaseError(f"{path}: {key}: acts on no coating; give the expansion of the swept one")
     if (p.load is None) == (sweep.load is None):
-        raise CaseError(f"{path}: needs exactly one of problem.load or sweep.load")
+        raise CaseError(f"{path}: needs exactly one of load or sweep.load")
     if sweep.load is not None and len(p.coatings) > 1:
         raise CaseError(f"{path}: sweep.load: not with several coatings; sweep the thickness of one")
     if sweep.load is not None and coatings:
@@ -358,15 +352,15 @@ def parse_study(raw: bytes, path: Path) -> Study:
         bare = CoatedContact(p.size, load, (), substrate, ball=p.ball.bare if p.ball else None)
         ball = p.ball.coated(bare.a_h) if p.ball else None
     except ValueError as error:
-        raise CaseError(f"{path}: problem: {error}") from None
-    if (p.varied.E is None) == (sweep.modulus_ratio is None):
-        raise CaseError(f"{path}: needs exactly one of problem.coating.E or sweep.modulus_ratio, E1/E2")
-    moduli = [p.varied.E] if p.varied.E else [r * p.substrate.E for r in sweep.modulus_ratio or ()]
+        raise CaseError(f"{path}: {error}") from None
+    if (p.modulus is None) == (sweep.modulus_ratio is None):
+        raise CaseError(f"{path}: needs exactly one of the coating's E or sweep.modulus_ratio, E1/E2")
+    moduli = [p.modulus] if p.modulus else [r * p.substrate.E for r in sweep.modulus_ratio or ()]
     try:
         below = p.substrate.expansion
         residual = tuple(p.varied.residual(E, p.varied.nu, below, p.temperature_change) for E in moduli)
     except ValueError as error:
-        raise CaseError(f"{path}: problem.coating: {error}") from None
+        raise CaseError(f"{path}: coating: {error}") from None
     refuse_unfit_scales(path, replace(bare, ball=ball))
     asked: list[float] | _Range | None = sweep.thickness
     key, scale = "thickness", 1.0
@@ -378,9 +372,9 @@ def parse_study(raw: bytes, path: Path) -> Study:
 
     def slips(*given: float) -> str:
         coatings = tuple((moduli[0], p.varied.nu, h) for h in given)
-        return likely_slips(replace(bare, coatings=coatings, ball=ball)).replace("coatings.0", "coating")
+        return likely_slips(replace(bare, coatings=coatings, ball=ball)).replace("coating 1", "coating")
 
-    over, under = p.held()
+    over, under = p.held(bare.a_h)
     refuse_unfit_scales(path, replace(bare, coatings=(*over, *under), ball=ball))
     contacts = [bare, replace(bare, load=sweep.load.start)] if sweep.load else [bare]
     for a_h, (i, h) in product([one.a_h for one in contacts], enumerate(thicknesses)):
@@ -408,6 +402,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
         ball=ball,
         above=over,
         below=under,
+        halved=_halved(p, bare.a_h) if p.graded() else {},
         cross_check=sweep.cross_check,
         numerics={
             source: getattr(checked, source).model_dump(exclude_none=True)
@@ -421,7 +416,10 @@ def parse_study(raw: bytes, path: Path) -> Study:
         names=p.names(),
         warnings=(
             *_warnings(bare, ball, thicknesses, checked),
-            *(line.replace("coatings.0", "coating") for line in residual_warnings({FLAT: residual[:1]})),
+            *(
+                line.replace("coating 1", "coating")
+                for line in residual_warnings({FLAT: residual[:1]}, p.temperature_change)
+            ),
         ),
         units=units_of(checked),
     )
@@ -430,15 +428,22 @@ def parse_study(raw: bytes, path: Path) -> Study:
     return study
 
 
+def _halved(p: _Problem, a_h: float) -> dict[str, Any]:
+    """The fixed coatings and the ball of a request with half of their sub-layers."""
+    above, below = p.held(a_h, over=2)
+    ball = p.ball.coated(a_h, over=2) if p.ball else None
+    return {"above": plain(above), "below": plain(below), "ball": plain(ball)}
+
+
 def _warnings(
     bare: CoatedContact, ball: Ball | None, thicknesses: tuple[float, ...], checked: _StudyFile
 ) -> tuple[str, ...]:
     """Those of the thinnest coating and the thickest, each line once."""
     p = checked.problem
     found = [
-        line.replace("coatings.0.", "coating.")
+        line.replace("coating 1, ", "coating, ")
         # A ratio has no unit.
-        for E in ([p.varied.E] if p.varied.E else [p.substrate.E])
+        for E in ([p.modulus] if p.modulus else [p.substrate.E])
         for h in (min(thicknesses), max(thicknesses))
         for line in warnings_of(replace(bare, coatings=((E, p.varied.nu, h),), ball=ball))
     ]

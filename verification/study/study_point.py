@@ -17,6 +17,7 @@ from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import message_of
 from verification.running.provenance import versions
+from verification.running.slicing import sliced
 from verification.sources.source_registry import solvers
 from verification.study.largest_stresses import QUANTITIES as STRESSES
 from verification.study.largest_stresses import quantities
@@ -28,7 +29,7 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
 
     request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness), above
     and below (fixed coatings on either side of it), residual (stresses of the coating [Pa]), substrate
-    (E, nu), ball (E, nu, coatings) unless it is rigid.
+    (E, nu), ball (E, nu, coatings) unless it is rigid, halved (what differs with half of the sub-layers).
     Returns {"rows": [one dictionary for each residual stress, then friction], "seconds", "versions"}; a solve
     that fails leaves its message in every row.
     """
@@ -41,9 +42,30 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
             solution = solvers()[request["source"]](problem, request["numerics"])
             swept = len(request.get("above", ()))
             rows = _rows(solution, problem, frictions, request["residual"], swept)
+            if request.get("halved"):
+                rows = _sliced(rows, answer(halved_request(request))["rows"])
     except Exception as error:  # a point that fails is a row with its message
         rows = failed_rows(request, message_of(error))
     return {"rows": rows, "seconds": time.perf_counter() - begin, "versions": versions()}
+
+
+def halved_request(request: Mapping[str, Any]) -> dict[str, Any]:
+    """A request with half of the sub-layers of its graded coatings."""
+    return {key: value for key, value in (dict(request) | request["halved"]).items() if key != "halved"}
+
+
+def _sliced(rows: list[dict[str, Any]], halved: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """``rows`` with the uncertainty of the slicing, see ``sliced``; the swept coating is not graded.
+
+    Raises ValueError with the message of a solve that failed.
+    """
+    found = []
+    for row, other in zip(rows, halved, strict=True):
+        if other["failure"] is not None:
+            raise ValueError(f"with half of the sub-layers: {other['failure']}")
+        ends = {f"{name}_uncertainty": sliced(row[name] - other[name]) for name in SCALES if name in row}
+        found.append(row | {end: row[end] + more for end, more in ends.items() if row.get(end) is not None})
+    return found
 
 
 def failed_rows(request: Mapping[str, Any], message: str) -> list[dict[str, Any]]:

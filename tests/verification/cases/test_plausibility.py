@@ -55,12 +55,12 @@ def found(template, **changed):
 
 # Ten typical files, each with one slip of a unit; the message has to lead to it.
 SLIPS = [
-    (CASE, {"E": "210"}, "substrate.E", "GPa"),
-    (CASE, {"E": "210000", "coating": "450000", "ball": "310000"}, "substrate.E", "MPa"),
-    (CASE, {"ball": "310"}, "ball.E", "GPa"),
-    (CASE, {"coating": "450"}, "coatings.0.E", "GPa"),
-    (CASE, {"thickness": "3"}, "coatings.0.thickness", "um"),
-    (CASE, {"thickness": "0.003"}, "coatings.0.thickness", "mm"),
+    (CASE, {"E": "210"}, "substrate, E", "GPa"),
+    (CASE, {"E": "210000", "coating": "450000", "ball": "310000"}, "substrate, E", "MPa"),
+    (CASE, {"ball": "310"}, "ball, E", "GPa"),
+    (CASE, {"coating": "450"}, "coating 1, E", "GPa"),
+    (CASE, {"thickness": "3"}, "coating 1, thickness", "um"),
+    (CASE, {"thickness": "0.003"}, "coating 1, thickness", "mm"),
     (CASE, {"radius": "10"}, "radius", "mm"),
     (CASE, {"load": "20000"}, "load", "radius"),
     (STUDY, {"thickness": "3"}, "thickness", "um"),
@@ -87,8 +87,8 @@ def test_nothing_is_told_of_the_shipped_files():
 @pytest.mark.parametrize(
     ("changed", "message"),
     [
-        ({"substrate": (0.99e6, 0.3), "coatings": (), "load": 1e-3}, "substrate.E"),
-        ({"substrate": (2.1e12, 0.3)}, "substrate.E"),
+        ({"substrate": (0.99e6, 0.3), "coatings": (), "load": 1e-3}, "substrate, E"),
+        ({"substrate": (2.1e12, 0.3)}, "substrate, E"),
         ({"load": 4e4}, "0.11 R"),
         ({"coatings": ((450e9, 0.22, 11e-3),)}, "0.011 m"),
         ({"coatings": ((450e9, 0.22, 3e-3),)}, "contact"),
@@ -103,6 +103,6 @@ def test_each_limit(changed, message):
 def test_limits_of_a_solved_contact():
     p0 = 1e9
     (line,) = beyond_limits(p0, {"a.hardness": 1.01 * p0, "b.hardness": 0.99 * p0, "c.yield_strength": 1.0})
-    assert "b.hardness" in line
+    assert "b, hardness" in line
     assert strain_warning("film", 0.0499) == ()
     assert "film is strained by 5.1 %" in strain_warning("film", 0.051)[0]

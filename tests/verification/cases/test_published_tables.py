@@ -145,12 +145,12 @@ def test_malformed_table_is_refused_with_file_row_and_column(files, csv, said):
         ('"sigma_zz"', '"sigma_rr"', r"t\.csv, column s"),
         ('z = "depth"', 'z = "deep"', r"t\.csv"),
         ("year = 1900", 'year = "1900"', r"disc\.toml"),
-        ('seen = "primary"', 'seen = "maybe"', r"disc\.toml: table\.0\.seen"),
-        ('file = "t.csv"', 'file = "../t.csv"', r"disc\.toml: table\.0\.file"),
+        ('seen = "primary"', 'seen = "maybe"', r"disc\.toml: table 1, seen"),
+        ('file = "t.csv"', 'file = "../t.csv"', r"disc\.toml: table 1, file"),
         ('file = "t.csv"', 'file = "u.csv"', r"u\.csv"),
         ("pressure = 0.1", "radius = 0.1", r"disc\.toml"),
         ('at = { z = "depth", unit = "in" }', "", r"disc\.toml"),
-        ("nu = 0.4,", "nu = 0.7,", r"disc\.toml: problem\.coatings\.0\.nu"),
+        ("nu = 0.4,", "nu = 0.7,", r"disc\.toml: coating 1, nu"),
     ],
 )
 def test_malformed_case_is_refused_with_file_and_key(files, old, new, said):

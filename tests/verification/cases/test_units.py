@@ -24,7 +24,7 @@ OTHERS = {
     "E": {"N/mm^2": "1e6", "N/mm²": "1e6", "N/mm**2": "1e6", "bar": "1e5", "kgf / mm^2": "9806650"},
 }
 BASE = {"load": "N", "thickness": "m", "E": "Pa"}
-KEYS = {"load": "problem.load", "thickness": "problem.coatings.0.thickness", "E": "problem.substrate.E"}
+KEYS = {"load": "load", "thickness": "coating 1, thickness", "E": "substrate, E"}
 BAD = ("furlongish", "Gpa", "GPA", "kg", "K", "mm^2", "Pa s", "N/m", "m^99", "Pa**Pa", "1/Pa", "", "(N)", "%")
 NUMBERS = st.decimals("1e-3", "1e3", allow_nan=False, places=4).filter(bool).map(str) | st.sampled_from(
     ["20", "+2.5", "3.", ".5", "2.5e3", "7E-2", "1e+1"]
@@ -88,7 +88,7 @@ def test_generated_texts_are_exact_or_refused_with_key_and_unit(drawn):
     except CaseError as error:
         # A number that no contact has is refused as the same bare number is.
         bare = with_text(key, text).replace(f'"{text}"', repr(float(value)))
-        with pytest.raises(CaseError, match=re.escape(str(error))):
+        with pytest.raises(CaseError, match=re.escape(str(error).partition("; load in")[0])):
             parse(bare)
         return
     assert found == float(value)
@@ -101,13 +101,13 @@ def test_generated_texts_are_exact_or_refused_with_key_and_unit(drawn):
         ("E", "210 Gpa", "unknown"),
         ("E", "2,1 GPa", "decimal"),
         ("load", "20", "quotation"),
-        ("load", "-3 N", "greater"),
+        ("load", "-3 N", "above 0"),
         ("load", "1e999 N", "finite"),
         ("load", "9" * 70 + " N", "number"),
         ("load", "2**9**9**9**9 N", "number"),
         ("load", "20 N^(9**9**9**9)", "unknown"),
         ("load", "1e9999 kN", "finite"),
-        ("thickness", "1e-9999 nm", "greater"),
+        ("thickness", "1e-9999 nm", "above 0"),
     ],
 )
 def test_messages_name_key_and_unit(key, text, message):

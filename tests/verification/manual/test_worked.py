@@ -16,4 +16,4 @@ def test_residual_compression_takes_the_tension_of_the_coating(number):
 
 @pytest.mark.slow
 def test_silver_is_warned_of():
-    assert "coatings.0.yield_strength = 100 MPa" in " ".join(worked(3).split())
+    assert "coating 1, yield_strength = 100 MPa" in " ".join(worked(3).split())

@@ -45,7 +45,7 @@ def test_any_layer_is_swept(layers, thicknesses):
     [
         (HELD, "swept"),
         ('{ nu = 0.2 }, { E = "1 GPa", nu = 0.2 }', "swept"),
-        ('{ E = "300 GPa", nu = 0.2 }, { nu = 0.25, thickness = 2e-5 }', "coatings.1"),
+        ('{ E = "300 GPa", nu = 0.2 }, { nu = 0.25, thickness = 2e-5 }', "coating 2"),
         ('{ E = "300 GPa", nu = 0.2 }, { E = "4 GPa", nu = 0.25, thickness = 2e-9 }', "um"),
     ],
 )
