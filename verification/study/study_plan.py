@@ -230,8 +230,7 @@ class _Problem(Sized):
         """The names that are given, by the keys of their layers."""
         layers: dict[str, Limited | None] = {"substrate": self.substrate, "coating": self.coating}
         layers |= {f"coatings.{i}": one for i, one in enumerate(self.coatings)} | {"ball": self.ball}
-        on_ball = self.ball.coatings if self.ball else []
-        layers |= {f"ball.coatings.{i}": one for i, one in enumerate(on_ball)}
+        layers |= {f"ball.coatings.{i}": one for i, one in enumerate(self.ball.coatings if self.ball else [])}
         return {key: one.name for key, one in layers.items() if one is not None and one.name}
 
     @property
@@ -327,16 +326,13 @@ def parse_study(raw: bytes, path: Path) -> Study:
     """Check the content of a study file; ``path`` names it in messages. Raises CaseError."""
     text, checked = read_toml(raw, path, _StudyFile)
     p, sweep = checked.problem, checked.sweep
-    limits = p.limits()
     try:
-        criteria = checked.criteria.with_yield_strengths(limits)
+        criteria = checked.criteria.with_yield_strengths(limits := p.limits())
     except ValueError as error:
         raise CaseError(f"{path}: problem.{error}") from None
     coatings = p.ball.coatings if p.ball else []
     if any(one.expansion for one in (p.ball, *coatings) if one) or any(c.residual_stress for c in coatings):
-        raise CaseError(
-            f"{path}: ball: leave residual and expansion out, for no stress of the ball is judged"
-        )
+        raise CaseError(f"{path}: ball: leave residual, expansion out, for no stress of the ball is judged")
     if p.varied.expansion is None and (p.substrate.expansion, p.temperature_change) != (None, None):
         key = "temperature_change" if p.substrate.expansion is None else "substrate.expansion"
         raise CaseError(f"{path}: {key}: acts on no coating; give the expansion of the swept one")
