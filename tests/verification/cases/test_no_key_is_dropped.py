@@ -58,10 +58,10 @@ ON_BALL |= {"problem.ball.coatings.expansion": "9e-6"}
 GRADED = '{ course = "linear", top = 4e11, base = 2e11 }'
 TABLE = "{ depth = [0.0, 0.5, 1.0], E = [4e11, 3e11, 2e11] }"
 LAYERS = {"problem.coatings.layers": "4"}
-ELLIPSE = {"problem.ball": None, "problem.radius": None, "problem.indenter.shape": '"ellipsoid"'}
-LOBES = {"problem.ball": None, "problem.indenter.shape": '"lobes"', "problem.indenter.lobes": "3"}
+ELLIPSE = {"ball: leave": None, "problem.radius": None, "problem.indenter.shape": '"ellipsoid"'}
+LOBES = {"ball: leave": None, "problem.indenter.shape": '"lobes"', "problem.indenter.lobes": "3"}
 LOBES |= {"problem.indenter.amplitude": "1e-9", "problem.indenter.at": "1e-5"}
-SPHERES = {"problem.ball": None, "problem.indenter.shape": '"asperities"'}
+SPHERES = {"ball: leave": None, "problem.indenter.shape": '"asperities"'}
 CLAIMED = {"claim": CLAIM}
 # Each key: what stands beside it, two values that have to give different work.
 KEYS = {
@@ -264,10 +264,10 @@ STACK = STUDY.replace("coating = {", "coatings = [{ nu = 0.2, E = 2e11, thicknes
         (STUDY, "nu = 0.27,", 'nu = 0.27, name = "Si3N4",', ""),
         (STUDY, "nu = 0.27,", 'nu = 0.27, hardness = "15 GPa",', ""),
         (STUDY, "nu = 0.27,", 'nu = 0.27, yield_strength = "9 GPa",', "ball.yield_strength"),
-        (STUDY, "nu = 0.27,", "nu = 0.27, expansion = 3e-6,", "problem.ball"),
+        (STUDY, "nu = 0.27,", "nu = 0.27, expansion = 3e-6,", "ball: leave"),
         (STUDY, "thickness = 1e-6", 'thickness = 1e-6, name = "DLC"', ""),
         (STUDY, "thickness = 1e-6", 'thickness = 1e-6, yield_strength = "9 GPa"', "coatings.0.yield"),
-        (STUDY, "thickness = 1e-6", "thickness = 1e-6, residual_stress = -1e9", "problem.ball"),
+        (STUDY, "thickness = 1e-6", "thickness = 1e-6, residual_stress = -1e9", "ball: leave"),
         (STACK, "thickness = 1e-6 }, {", 'thickness = 1e-6, name = "WC" }, {', ""),
         (STACK, "thickness = 1e-6 }, {", "thickness = 1e-6, hardness = 9e9 }, {", ""),
         (STACK, "thickness = 1e-6 }, {", "thickness = 1e-6, yield_strength = 9e9 }, {", "coatings.0.yield"),
