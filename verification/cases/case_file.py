@@ -22,6 +22,7 @@ from verification.cases.solid_schema import (
     limits_of,
 )
 from verification.cases.toml_file import (
+    NO_SOURCE,
     CaseError,
     Friction,
     Strict,
@@ -184,6 +185,9 @@ class _Problem(Sized):
             bodies[BALL] = (self.ball.expansion, self.ball.coatings)
         found = {}
         for body, (below, coatings) in bodies.items():
+            if below is not None and all(c.expansion is None for c in coatings):
+                key = BALL if body == BALL else "substrate"
+                raise ValueError(f"{key}.expansion acts on no coating: give that of one, or leave it out")
             stresses = []
             for i, coating in enumerate(coatings):
                 try:
@@ -263,7 +267,7 @@ class _FemNumerics(Strict):
 
 class _CaseFile(Strict):
     title: Text
-    source: Text = "no source stated"
+    source: Text = NO_SOURCE
     problem: _Problem
     semianalytic: _SemianalyticNumerics = _SemianalyticNumerics()
     fem_reference: _FemNumerics = _FemNumerics()
@@ -303,7 +307,7 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
         numerics,
         text,
         checked.resolve,
-        (*warnings_of(problem, limits), *residual_warnings(residual, checked.problem.temperature_change)),
+        (*warnings_of(problem), *residual_warnings(residual, checked.problem.temperature_change)),
         limits,
         residual,
         {body: tuple(c.sublayers(over) for c in coatings) for body, coatings in graded.items()},

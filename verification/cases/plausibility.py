@@ -22,10 +22,9 @@ WIDEST = 0.1  # contact radius over that of the ball
 THICKEST = 20.0  # thickness over contact radius; beyond it the substrate has no part in the contact
 COATING = 1e-3  # m, thicker than coatings are
 BALLS = (1, 2, 3, 4, 5, 6, 6.35, 8, 9.525, 10, 12.7)  # mm, usual diameters in tribometers
-STRAIN = 0.05  # p_h / E*
+STRAIN = 0.05  # of a layer, beyond which strains are not small
 THINNER = 0.2  # of the layer below it: an interlayer, that hardly lies at the surface
 RESIDUAL = (1e6, 2e10)  # Pa, magnitude of a residual stress
-YIELD = 1.6  # p0 over the yield strength where yielding begins below the surface. Johnson (6.9)
 LIKELY = "looks like"
 BARE = 1e3  # Pa; a bare modulus below it is meant in GPa, whatever the ball
 _MODULUS_UNITS = {"GPa": 1e9, "MPa": 1e6, "kPa": 1e3}
@@ -34,18 +33,9 @@ _LENGTH_UNITS = {"um": 1e-6, "mm": 1e-3, "nm": 1e-9}
 Limits = Mapping[str, float]
 
 
-def warnings_of(problem: CoatedContact, limits: Limits | None = None) -> tuple[str, ...]:
-    """A line for each implausible number of ``problem``, before it is solved.
-
-    limits : hardness and yield strength [Pa] by their keys, as ``beyond_limits`` has them.
-    """
-    return (
-        *_numbers(problem),
-        *_thick(problem),
-        *_order(problem),
-        *_contact(problem),
-        *beyond_limits(problem.p_h, limits or {}),
-    )
+def warnings_of(problem: CoatedContact) -> tuple[str, ...]:
+    """A line for each implausible number of ``problem``, before it is solved."""
+    return (*_numbers(problem), *_thick(problem), *_order(problem), *_wide(problem))
 
 
 def refused(problem: CoatedContact) -> tuple[str, ...]:
@@ -54,15 +44,22 @@ def refused(problem: CoatedContact) -> tuple[str, ...]:
 
 
 def beyond_limits(p0: float, limits: Limits) -> tuple[str, ...]:
-    """A line for each hardness, or yield strength, that the peak pressure ``p0`` [Pa] exceeds."""
-    found = []
-    for key, value in limits.items():
-        factor, what = (1.0, "") if key.endswith("hardness") else (YIELD, f"{YIELD:g} times ")
-        if p0 > factor * value:
-            found.append(
-                f"peak pressure {_stress(p0)} is beyond {what}{spoken(key)} = {_stress(value)}: not elastic"
-            )
-    return tuple(found)
+    """A line for each hardness that the peak pressure ``p0`` [Pa] of a solved contact exceeds."""
+    return tuple(
+        f"peak pressure {as_stress(p0)} is beyond {spoken(key)} = {as_stress(value)}: not elastic"
+        for key, value in limits.items()
+        if key.endswith("hardness") and p0 > value
+    )
+
+
+def strain_warning(name: str, strain: float) -> tuple[str, ...]:
+    """A line where the ``strain`` of a solved layer, called ``name``, is not small."""
+    if strain <= STRAIN:
+        return ()
+    return (
+        f"{name} is strained by {100 * strain:.2g} %, above {100 * STRAIN:g} %: beyond small strains and "
+        "most materials; check load, radius, E",
+    )
 
 
 def diameter_remark(radius: float | None) -> tuple[str, ...]:
@@ -84,7 +81,7 @@ def residual_warnings(
     found = []
     worst = max((one for stresses in residual.values() for one in stresses), key=abs, default=0.0)
     if change is not None and change > 0 and worst:
-        state = f"{_stress(abs(worst))} of {'tension' if worst > 0 else 'compression'}"
+        state = f"{as_stress(abs(worst))} of {'tension' if worst > 0 else 'compression'}"
         found.append(
             f"temperature_change = {change:g} K, a heating since deposition, gives the coating {state}; "
             f"cooling from deposition is negative, {-change:g}"
@@ -162,20 +159,15 @@ def _order(problem: CoatedContact) -> Iterator[str]:
             )
 
 
-def _contact(problem: CoatedContact) -> Iterator[str]:
-    """Lines for what the numbers make together."""
-    ratio, strain = own_radius(problem) / problem.radius, problem.p_h / problem.E_star
+def _wide(problem: CoatedContact) -> Iterator[str]:
+    """A line for a contact that is wide on its ball."""
+    ratio = own_radius(problem) / problem.radius
     if ratio > WIDEST:
         sphere = 1 - (1 - min(ratio, 1.0) ** 2) ** 0.5
         cost = 100 * (sphere / (ratio**2 / 2) - 1)
         yield (
             f"contact radius a = {ratio:.2g} R is above {WIDEST:g} R: at the contact edge the sphere is "
-            f"{cost:.2g} % higher than the parabola that is solved"
-        )
-    if strain > STRAIN:
-        yield (
-            f"strain p_h/E* = {100 * strain:.2g} % is above {100 * STRAIN:g} %, beyond small strains and "
-            "most materials; check load, radius, E"
+            f"{cost:.2g} % higher than the parabola that is solved; check load, radius, E"
         )
 
 
@@ -196,5 +188,6 @@ def before(body: str) -> str:
     return f"{BALL}." if body == BALL else ""
 
 
-def _stress(value: float) -> str:
+def as_stress(value: float) -> str:
+    """A stress [Pa] in GPa or MPa, three digits."""
     return f"{value / 1e9:.3g} GPa" if value >= 1e9 else f"{value / 1e6:.3g} MPa"

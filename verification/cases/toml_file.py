@@ -16,6 +16,7 @@ MAX_BYTES = 250_000
 # 200 kB, exhaust 20 GB. A line of a case file has a few dots.
 MAX_DOTS = 250
 MAX_NAME = 100
+NO_SOURCE = "no source stated"
 LISTED = 6  # errors of a file in one message
 # What people write for a key; as ``meant`` of an option in commands.toml.
 _SYNONYMS = {

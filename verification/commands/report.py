@@ -49,7 +49,7 @@ def report(
             evidence = material.evidence
             if records is not None or not whole:
                 place, tests = RECORDS if records is None else records, evidence.self_tests or self_tests()
-                kept = {name: getattr(evidence, name) for name in ("accuracy", "baseline")}
+                kept = {name: getattr(evidence, name) for name in ("accuracy", "baseline", "designed")}
                 evidence = replace(gather(place, material.modelled, tests), **kept)
             if baseline is not None or not whole:
                 place = BASELINE if baseline is None else baseline

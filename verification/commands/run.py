@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
+from rich.markup import escape
 
 from verification.cases.case_file import Case
 from verification.cases.published_file import PublishedCase
@@ -31,20 +32,23 @@ from verification.commands.common.shared_options import (
     Strict,
 )
 from verification.commands.common.task_progress import kept_results, kept_study, run_info, solve, worker_count
-from verification.commands.common.terminal import print_error, print_json, print_warnings
+from verification.commands.common.terminal import print_error, print_json, print_out, print_warnings
 from verification.commands.common.terminal_bar import require_gmsh
 from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
 from verification.credibility.self_tests import self_tests
+from verification.desk.layer_limits import Designed, designed
 from verification.regression.baseline_change import regression, regression_json
 from verification.regression.baseline_file import read_baseline
 from verification.regression.junit_xml import junit_xml
 from verification.regression.run_exit_codes import run_code
-from verification.running.case_result import CaseResult
+from verification.running.case_result import CaseResult, message_of
 from verification.running.case_tasks import case_task, kept_result
 from verification.running.checked_files import StoreError, locked
+from verification.running.json_records import encode
 from verification.running.pool.pool_task import Task
 from verification.running.stored_fields import read_planes
+from verification.sources.source_registry import METHODS
 
 if TYPE_CHECKING:
     from verification.report.report_material import Evidence
@@ -132,11 +136,20 @@ def run(
         return _stopped(chosen, output)
     if as_json:
         passed = {test.name: test.passed for test in tests}
-        print_json(run_json(results, page, regression_json(beside), passed, evidence.beyond, code, studies))
+        content = run_json(results, page, regression_json(beside), passed, evidence.beyond, code, studies)
+        print_json(content | {"designed": {name: encode(one) for name, one in evidence.designed.items()}})
     elif not quiet:
         print_run(results, page, time.perf_counter() - begin, beside, studies)
+        for name, found_with in evidence.designed.items():
+            print_out(escape(f"{name}, with what it states of its layers: {found_with.summary}"))
     for name, lines in evidence.beyond.items():
         print_warnings(lines, name, strict=False, silent=silent)
+    told = {case.name: case.warnings for case in chosen if isinstance(case, Case)}
+    for result in results:
+        late = [line for line in result.warnings if line not in told.get(result.name, ())]
+        stated = evidence.designed.get(result.name)
+        late += stated.warnings if stated is not None else ()
+        print_warnings(late, result.name, strict=strict, silent=silent)
     return code
 
 
@@ -148,7 +161,17 @@ def _standing(chosen: Sequence[Case | PublishedCase], records: Path) -> "Evidenc
     for test in tests:
         if not test.passed:
             print_error(f"self-test of the {test.name}: {test.found}; the verdicts of this run are not valid")
-    return gather(records, {case.name: Modelled.of(case) for case in chosen if isinstance(case, Case)}, tests)
+    contacts = [case for case in chosen if isinstance(case, Case)]
+    found = gather(records, {case.name: Modelled.of(case) for case in contacts}, tests)
+    known = {case.name: _designed(case) for case in contacts}
+    return replace(found, designed={name: one for name, one in known.items() if one is not None})
+
+
+def _designed(case: Case) -> Designed | None:
+    try:
+        return designed(case, METHODS[0])
+    except Exception as error:  # a failed solve is a row of the report besides
+        return Designed(f"No largest stresses with what the case states: {message_of(error)}")
 
 
 def _stopped(chosen: Sequence[Case | PublishedCase], output: Path) -> int:

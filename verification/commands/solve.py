@@ -2,7 +2,7 @@
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from textwrap import wrap
@@ -11,11 +11,13 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 from rich.console import Console
 from rich.markup import escape
+from rich.progress import Progress
 from rich.table import Column, Table
 from threadpoolctl import threadpool_limits
 
 from verification.cases.case_file import Case, default_cases, parse_case, read_case
 from verification.cases.plausibility import beyond_limits, refused
+from verification.cases.toml_file import NO_SOURCE, load_toml
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import require_format
@@ -35,6 +37,7 @@ from verification.desk.contact_answer import (
     usual_seconds,
     with_slicing,
 )
+from verification.desk.layer_limits import LayerLimit, layer_limits, layer_name, yield_strengths
 from verification.desk.stack_text import body_label, conditions, described, outside_verified, stack, units_of
 from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import FLAT
@@ -115,13 +118,13 @@ def solve(
         with bars() as bar:
             bar.add_task("finite elements", total=1)
             second = _answer(case, SECOND)
-    # Before the solve the peak pressure was that of Hertz.
-    told = any(line.startswith("peak pressure") for line in case.warnings)
-    late = () if told else beyond_limits(first.numbers["peak_pressure"][0], case.limits)
+    limited = _limited(case, first, bars)
+    late = [line for one in limited for line in one.warnings(layer_name(case, one))]
+    late += beyond_limits(first.numbers["peak_pressure"][0], case.limits)
     print_warnings(late, case.name, strict=strict, silent=as_json)
     apart = differences(first, second) if second is not None else ()
     if not (as_json or strict):
-        _print(case, stated, apart, halved)
+        _print(case, stated, apart, halved, limited)
     with bars() as bar:
         task = bar.add_task("error of the model", total=1)
         beyond = model_error(case.problem)
@@ -148,6 +151,7 @@ def solve(
             "remarks": case.remarks,
             "model_error": {"message": beyond.message(), **encode(beyond)},
             "answer": encode(stated),
+            "layers": [encode(one) | {"utilisation": one.utilisation} for one in limited],
             "check": second and encode(second),
             "differences": [encode(one) for one in apart],
             "half_of_the_sublayers": [encode(one) for one in halved],
@@ -155,7 +159,7 @@ def solve(
         print_json(content)
     else:
         if strict:
-            _print(case, stated, apart, halved)
+            _print(case, stated, apart, halved, limited)
         _print_model(case, beyond, checked=second is not None)
         elements = f", finite elements {second.seconds:.1f} s" if second else ""
         total = time.perf_counter() - begin
@@ -199,6 +203,31 @@ def _answer(case: Case, source: str) -> Answer:
         raise no_result(f"{case.name}: {source}: {message_of(error)}") from None
 
 
+def _limited(case: Case, first: Answer, bars: Callable[[], Progress]) -> tuple[LayerLimit, ...]:
+    """Strain of each layer, and where it has a yield strength the load at which it begins to yield."""
+    strengths = yield_strengths(case.limits)
+    with bars() as bar:
+        task = bar.add_task("loads at which layers yield", total=1, visible=bool(strengths))
+        found = layer_limits(
+            case.problem, first, strengths, case.numerics.get(METHOD), case.residual, case.layers
+        )
+        bar.update(task, advance=1)
+    return found
+
+
+def _yielding(case: Case, limited: Sequence[LayerLimit]) -> Table | None:
+    """The layers that have a yield strength; None without any."""
+    units = units_of(case.problem)
+    heads = (f"von Mises {units.stress}", f"yield {units.stress}", "used", f"from {units.force}")
+    table = _table(("yielding",), heads)
+    for one in limited:
+        if one.yield_strength is not None and one.utilisation is not None:
+            begins = "-" if one.yields_from is None else f"{one.yields_from / units.newton:.3g}"
+            stresses = (f"{stress / units.pascal:.4g}" for stress in (one.von_mises, one.yield_strength))
+            table.add_row(layer_name(case, one), *stresses, f"{one.utilisation:.0%}", begins)
+    return table if table.row_count else None
+
+
 def _coarser(case: Case) -> tuple[Answer, ...]:
     """Answers with half and a quarter of the sub-layers of graded coatings; () without any."""
     overs = (2, 4) if case.layers else ()
@@ -211,7 +240,13 @@ def _table(words: Sequence[str], figures: Sequence[str]) -> Table:
     return Table(*words, *right, box=None, header_style="bold", pad_edge=False)
 
 
-def _print(case: Case, first: Answer, apart: Sequence[Difference], halved: Sequence[Difference]) -> None:
+def _print(
+    case: Case,
+    first: Answer,
+    apart: Sequence[Difference],
+    halved: Sequence[Difference],
+    limited: Sequence[LayerLimit],
+) -> None:
     besides = {"elements − this": apart, "half the sub-layers − this": halved}
     more = {head: {one.key: one for one in found} for head, found in besides.items() if found}
     units = units_of(case.problem)
@@ -246,6 +281,7 @@ def _print(case: Case, first: Answer, apart: Sequence[Difference], halved: Seque
     print_out(
         f"[bold]{escape(case.title)}[/]",
         escape(stack(case)),
+        *(escape(line) for line in wrap(f"source: {case.source}", COLUMNS) if case.source != NO_SOURCE),
         "",
         *(escape(line) for text in said for line in wrap(text, COLUMNS)),
         "",
@@ -257,6 +293,8 @@ def _print(case: Case, first: Answer, apart: Sequence[Difference], halved: Seque
         "",
         "tension positive, in the plane y = 0, x along sliding, z into each body",
     )
+    if (yielding := _yielding(case, limited)) is not None:
+        print_out("", yielding, "")
     if halved:
         print_out("± contains the slicing: at least the change by half the sub-layers, in the plane thrice")
 
@@ -272,10 +310,22 @@ def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:
     if outside := outside_verified(case):
         hint = "compared here by --check" if checked else "try --check"
         print_out(escape(f"beyond the range in which both methods were compared: {outside}; {hint}"))
+    if unused := _unused(case, checked=checked):
+        print_out(escape(f"for coatcheck run: {', '.join(unused)}"))
     if case.residual:
         print_out(
             "with residual stress; the shear of an interface near a free edge of its coating is not covered"
         )
+
+
+def _unused(case: Case, *, checked: bool) -> list[str]:
+    """The tables of its file that this answer does not use."""
+    given = load_toml(case.text.encode())[1]
+    return [
+        key
+        for key in ("claim", "resolve", METHODS[1])
+        if key in given and not (checked and key == METHODS[1])
+    ]
 
 
 def _value(value: float, spread: float | None) -> str:

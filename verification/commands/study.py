@@ -6,8 +6,9 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from cyclopts import Parameter
 from rich.console import Console
@@ -25,6 +26,9 @@ from verification.regression.run_exit_codes import EXIT
 from verification.running.provenance import commit, cores, hardware
 from verification.sources.source_registry import SOURCES
 from verification.study.study_plan import Study, read_study_file, shipped_studies
+
+if TYPE_CHECKING:
+    from verification.study.study_engine import Outcome as Solved
 
 LABELS = {name: source.label for name, source in SOURCES.items()}
 FIGURE_GROUPS = 5
@@ -130,6 +134,10 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
             sys.stderr.write(f"coatcheck: {_forecast(chosen, output, jobs, limit)}\n")
         with _bars(silent) as (report, drawing):
             came = run_study(chosen, output, jobs, limit=limit, report=report)
+            if loads and limit is None:
+                chosen, came = _extended(
+                    chosen, came, partial(run_study, folder=output, jobs=jobs, report=report)
+                )
             facts = [
                 ("solves", f"{came.done} done, {came.kept} from the cache"),
                 ("duration", f"{time.perf_counter() - begin:.0f} s"),
@@ -150,7 +158,11 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
         print_error(f"{message.split(';')[0]}; solved again")
     if options.as_json:
         content = asdict(came) | {"table": str(came.table), "lost": len(came.lost), "seconds": seconds}
-        content |= {"warnings": chosen.warnings, "page": str(written.page), "answer": written.answer}
+        content |= {
+            "warnings": [*chosen.warnings, *written.warnings],
+            "page": str(written.page),
+            "answer": written.answer,
+        }
         print_json(content)
     elif not options.quiet:
         print_out(
@@ -158,7 +170,24 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
             f"{came.points} points in {seconds:.0f} s: {came.done} solves done, {came.kept} found in the "
             f"cache, {came.failed} of {came.rows} rows failed; table: {came.table}; page: {written.page}",
         )
+    print_warnings(written.warnings, chosen.name, strict=options.strict, silent=silent)
     return EXIT[Outcome.NO_RESULT] if came.failed else EXIT[Outcome.AGREES]
+
+
+def _extended(chosen: Study, came: "Solved", again: "Callable[..., Solved]") -> "tuple[Study, Solved]":
+    """The study of loads with its outcome, begun lower until every mode is below its strength there."""
+    from verification.study.choice.critical_load import extended
+    from verification.study.study_table import read_columns
+
+    while (lower := extended(chosen, read_columns(came.table))) is not None and lower.loads is not None:
+        before, chosen = came, lower
+        print_error(
+            f"{chosen.name}: a strength is exceeded at the first load already; the ramp is extended down to "
+            f"{lower.loads[0]:.3g} N"
+        )
+        came = again(chosen)
+        came.done += before.done
+    return chosen, came
 
 
 def _forecast(chosen: Study, output: Path, jobs: int, limit: int | None) -> str:

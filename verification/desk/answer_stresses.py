@@ -11,6 +11,7 @@ interface change near a free edge of the coating only, which is not part of this
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import accumulate
 
 import numpy as np
@@ -18,7 +19,7 @@ import numpy as np
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import BALL, CoatedContact, Solution, stress_with_uncertainty
 from verification.problem.either_body import on_body
-from verification.problem.quantity import von_mises
+from verification.problem.quantity import largest_strain, von_mises
 from verification.sampling.largest_tension import Search
 from verification.study.friction_planes import (
     XX,
@@ -49,7 +50,8 @@ REACH, POINTS = 2.0, 401  # of a course, over a
 class Extreme:
     """The largest ``quantity`` at one place of a ``body``: ``value`` +- ``uncertainty`` [Pa] at x, z [m].
 
-    quantity : sigma_xx, |sigma_xz|, sigma_zz, sigma_1 or von_mises.   where : "surface", "base of coating 1",
+    quantity : sigma_xx, |sigma_xz|, sigma_zz, sigma_1, von_mises, or strain, the largest principal one in
+    magnitude, which has no unit.   where : "surface", "base of coating 1",
     "top of substrate", "interface 1", "coating 1" and the like.   x : along the sliding of the ball over the
     flat; NaN with value 0 where a tensile stress is nowhere positive, in a layer without residual stress.
     z : into the body.
@@ -157,29 +159,34 @@ class _Layers:
         for k, base in enumerate(self.bases[i - 1] for i in self.bounds[1:]):
             yield "|sigma_xz|", f"interface {k + 1}", largest(base, lambda s: np.abs(s[XZ]), f)
             yield "sigma_zz", f"interface {k + 1}", tensile(largest(base, lambda s: s[ZZ], f))
-        measures: dict[str, Measure] = {"sigma_1": first_principal, "von_mises": von_mises}
         for number, layer in enumerate(self.bounds):
             below = (*self.bounds, layer + 1)[number + 1]
             if below - layer > 1:
-                for quantity, plain in measures.items():
-                    yield quantity, self.name(number), self._graded(plain, range(layer, below))
+                for quantity in self._measures(layer):
+                    yield quantity, self.name(number), self._graded(quantity, range(layer, below))
                 continue
             # They only locate: the uncertainty is evaluated at the place found.
             unstated = replace(self.parts, stated=False)
             between, knots = inner_planes(unstated, self.problem.interfaces, layer)
             planes = [self.tops[layer], *between, *self.bases[layer : layer + 1]]
-            for quantity, plain in measures.items():
-                measure = self._total(plain, layer)
+            for quantity, measure in self._measures(layer).items():
                 ends = [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
                 within = inside(self.parts, planes, knots, f, measure) + self._between(planes, measure)
                 best = max([*ends, *within], key=lambda at: at.value)
                 yield quantity, self.name(number), self._shown(best, layer)
 
-    def _graded(self, plain: Measure, layers: range) -> Located:
+    def _measures(self, layer: int) -> dict[str, Measure]:
+        """Each measure of the stress of a ``layer``, with its residual stress."""
+        E, nu = (*self.problem.coatings, self.problem.substrate)[layer][:2]
+        strain = partial(largest_strain, E=E, nu=nu)
+        of: dict[str, Measure] = {"sigma_1": first_principal, "von_mises": von_mises, "strain": strain}
+        return {quantity: self._total(measure, layer) for quantity, measure in of.items()}
+
+    def _graded(self, quantity: str, layers: range) -> Located:
         """The largest at the top and base of every sub-layer; uncertain too by the maximum between them."""
         found = []
         for layer in layers:
-            measure = self._total(plain, layer)
+            measure = self._measures(layer)[quantity]
             ends = [largest(p[layer], measure, self.problem.friction) for p in (self.tops, self.bases)]
             found.append(max(ends, key=lambda at: at.value))
         best = int(np.argmax([at.value for at in found]))

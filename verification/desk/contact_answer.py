@@ -26,7 +26,7 @@ Names = Mapping[str, tuple[str, ...]]  # of the coatings of each body, see ``Cas
 class Answer:
     """What ``source`` answers: ``numbers`` as (value, uncertainty) by name, SI; extremes, courses.
 
-    An uncertainty is None where the source states none.
+    An uncertainty is None where the source states none.   strains : the largest strain of each layer.
     """
 
     source: str
@@ -34,6 +34,7 @@ class Answer:
     numbers: dict[str, tuple[float, float | None]]
     extremes: tuple[Extreme, ...]
     courses: tuple[Course, ...]
+    strains: tuple[Extreme, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,9 @@ def answer(
         for name in SCALARS
     }
     found, drawn = stresses(solution, problem, residual, layers)
-    return Answer(source, time.perf_counter() - begin, numbers, found, drawn)
+    strains = tuple(at for at in found if at.quantity == "strain")
+    extremes = tuple(at for at in found if at.quantity != "strain")
+    return Answer(source, time.perf_counter() - begin, numbers, extremes, drawn, strains)
 
 
 def differences(first: Answer, second: Answer) -> tuple[Difference, ...]:

@@ -63,8 +63,8 @@ def _index(title: str, text: str, names: Any) -> str:
 def _problem(result: CaseResult) -> list[str]:
     """The parameters and scales of a problem, then its layers, body by body."""
     heads, values = zip(*facts(result.problem), strict=True)
-    tables = [table([typeset(head) for head in heads], [values], 0), shown(layer_table(result.problem))]
-    return [*tables, *([shown(layer_table(result.problem, BALL))] if layers(result.problem, BALL) else [])]
+    tables = [table([typeset(head) for head in heads], [values], 0), shown(layer_table(result))]
+    return [*tables, *([shown(layer_table(result, BALL))] if layers(result.problem, BALL) else [])]
 
 
 def _contact_page(result: CaseResult) -> str:

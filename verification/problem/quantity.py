@@ -183,3 +183,14 @@ def von_mises(sigma: Array | Sequence[Array]) -> Array:
     xx, yy, zz, *shear = sigma
     square = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * sum(s**2 for s in shear)
     return np.sqrt(square)
+
+
+def largest_strain(sigma: Array | Sequence[Array], E: float, nu: float) -> Array:
+    """Largest principal strain in magnitude, from the stresses xx, yy, zz, xz of the plane y = 0, (4, ...).
+
+    e_i = ((1 + nu) s_i - nu (s_1 + s_2 + s_3)) / E, s_i the principal stresses
+    """
+    xx, yy, zz, xz = sigma
+    middle, radius = (xx + zz) / 2, np.hypot((xx - zz) / 2, xz)
+    principal = np.stack([middle + radius, middle - radius, yy])
+    return np.abs(((1 + nu) * principal - nu * (xx + yy + zz)) / E).max(axis=0)

@@ -14,6 +14,7 @@ from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
 from verification.credibility.model_error import ModelError, judged_quantities, model_error
 from verification.credibility.self_tests import SelfTest
+from verification.desk.layer_limits import Designed
 from verification.evidence import alarm_record, code_record, enclosure_record
 from verification.evidence.alarm_record import AlarmRecord
 from verification.evidence.assumption_maps import AssumptionMaps, read_maps
@@ -59,6 +60,7 @@ class Evidence:
     maps : what the assumptions of the model cost.   models : the same of each case, by its name.
     older : names of the records that were made before the code they judge changed, see ``JUDGED``.
     beyond : by case, a line for each assumption that costs too much of what the case judges.
+    designed : by case, the largest stresses with the residual stresses and limits that it states.
     """
 
     code: CodeRecord | None = None
@@ -73,6 +75,7 @@ class Evidence:
     older: tuple[str, ...] = ()
     models: Mapping[str, ModelError] = field(default_factory=dict)
     beyond: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    designed: Mapping[str, Designed] = field(default_factory=dict)
 
     @property
     def orders(self) -> tuple[DesignOrder, ...]:

@@ -35,8 +35,10 @@ class CaseResult:
     problem : the fields of CoatedContact, with the scales a_h, p_h, delta_h and the interfaces.
     verdicts : one (Claim, Verdict) per claim of the case, in its order.
     published : of a published case its citation and the tables as printed; empty for any other.
-    invariants : of each solution by itself.   warnings : of implausible input, a line each.
-    remarks : on the input and on what its uncertainties leave out, likewise.
+    invariants : of each solution by itself.   warnings : of implausible input, and of strains that are not
+    small, a line each.   stated : what a case says of its layers that is no part of the problem: names,
+    residual stresses, limits, numbers of sub-layers, as in ``Case``; empty where it says nothing.
+    remarks : on the input and on what its uncertainties leave out, a line each.
     """
 
     name: str
@@ -51,6 +53,7 @@ class CaseResult:
     published: dict[str, Any] = field(default_factory=dict)
     invariants: tuple[Invariant, ...] = ()
     warnings: tuple[str, ...] = ()
+    stated: dict[str, Any] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
 
     @classmethod
@@ -58,6 +61,10 @@ class CaseResult:
         """The result of ``case`` with these ``parts``, empty where none are given."""
         stated: dict[str, Any] = {name: getattr(case, name) for name in ("name", "title", "source", "text")}
         empty: dict[str, Any] = {"sources": (), "profiles": (), "verdicts": (), "seconds": 0.0}
+        found = {name: getattr(case, name, {}) for name in ("names", "residual", "limits", "layers")}
+        if not any(name for names in found["names"].values() for name in names):
+            found["names"] = {}
+        empty |= {"stated": {name: value for name, value in found.items() if value}}
         return cls(**stated, problem=describe(case.problem), **empty | parts)
 
     @classmethod

@@ -1,18 +1,19 @@
 """One case from its problem to its verdicts."""
 
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from verification.cases.case_file import Case
+from verification.cases.plausibility import strain_warning
 from verification.judging.invariants import Invariant, check, resolved
 from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
-from verification.problem.line_profile import Profile
-from verification.problem.quantity import QUANTITIES, SCALARS
+from verification.problem.coated_contact import FLAT, CoatedContact, Solution
+from verification.problem.line_profile import Profile, lines_of
+from verification.problem.quantity import QUANTITIES, SCALARS, largest_strain
 from verification.running.case_result import CaseResult, SourceResult, diagnostics_of, message_of
 from verification.sampling.line_sampling import edge_of, ends_of, positions, sample, sample_contact
 from verification.sources.source_record import Solver
@@ -106,8 +107,35 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
         verdicts=verdicts,
         seconds=sum(s.seconds for s in solved.outcomes.values()) + time.perf_counter() - started,
         invariants=tuple(held),
-        warnings=case.warnings,
+        warnings=(*case.warnings, *_strains(case.problem, profiles)),
     )
+
+
+def _strains(problem: CoatedContact, profiles: Mapping[tuple[str, str, str], Profile]) -> Iterator[str]:
+    """A line for each layer whose strain is not small, along the lines of y = 0, by the first source."""
+    found: dict[tuple[str, int], float] = {}
+    for line in lines_of(problem):
+        of = {(p.quantity, p.source): p for p in profiles.values() if p.line == line.name}
+        source = next((source for quantity, source in of if quantity == "sigma_xx"), "")
+        stresses = [of.get((f"sigma_{component}", source)) for component in ("xx", "yy", "zz")]
+        if None in stresses:
+            continue
+        xx, yy, zz = (p.value for p in stresses if p is not None)
+        shear = of.get(("sigma_xz", source))
+        xz = np.zeros_like(xx) if shear is None else shear.value
+        seen = problem.seen_from(line.body)
+        z = line.points(of["sigma_xx", source].position)[2]
+        # on an interface the upper side counts, as in the solutions
+        layers = np.searchsorted(seen.interfaces, z) if line.layer is None else np.full(z.shape, line.layer)
+        for k in np.unique(layers).tolist():
+            E, nu = (*seen.coatings, seen.substrate)[k][:2]
+            s = np.stack([xx, yy, zz, xz])[:, layers == k]
+            place = line.body, k
+            found[place] = max(found.get(place, 0.0), float(largest_strain(s, E, nu).max()))
+    for (body, k), strain in sorted(found.items()):
+        count = len(problem.seen_from(body).coatings)
+        layer = "substrate" if k == count else f"coating {k + 1}"
+        yield from strain_warning(layer if body == FLAT else f"{body}, {layer}", strain)
 
 
 def decide(

@@ -18,10 +18,11 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
+from verification.cases import solid_schema
 from verification.cases.case_file import SUPPORTED, Sized, refuse_unfit_scales
-from verification.cases.plausibility import likely_slips, residual_warnings, warnings_of
-from verification.cases.solid_schema import BallEntry, Coating, Material, TemperatureChange, in_metres
-from verification.cases.toml_file import CaseError, Positive, Strict, Text, read_bounded, read_toml
+from verification.cases.plausibility import Limits, likely_slips, residual_warnings, warnings_of
+from verification.cases.solid_schema import BallEntry, Coating, Limited, Material, in_metres
+from verification.cases.toml_file import NO_SOURCE, CaseError, Positive, Strict, Text, read_bounded, read_toml
 from verification.cases.unit_numbers import Metres, Newtons, Units, units_of
 from verification.problem.array_types import Ball, Coatings
 from verification.problem.coated_contact import FLAT, CoatedContact
@@ -67,13 +68,16 @@ class Study:
     """A sphere on coatings of every modulus [Pa] and thickness [m], at every friction; SI.
 
     loads : smallest and largest [N], number for each thickness; None for ``load`` alone.
+    asked_from : smallest load of the file, where ``loads`` were extended below it.
     above, below : fixed coatings over and under the swept one.   halved : those and the ball with half of the
     sub-layers of graded coatings, whose change is part of every uncertainty; {} where none is graded.
     residual : stress [Pa] of the coating of each modulus, () for none.
     cross_check : every point whose number is a multiple is also solved by the other sources; 0 none.
     ball : None is rigid, or as of CoatedContact.
     numerics : each source's own keywords.  criteria : of the preferable thickness.  text : the file.
-    warnings : of implausible numbers, a line each.
+    source : where its numbers come from.
+    warnings : of implausible numbers, a line each.   hardness : [Pa] by the keys of the file.
+    names : of the layers that have one, by the same keys.
     """
 
     name: str
@@ -86,6 +90,7 @@ class Study:
     thicknesses: tuple[float, ...]
     frictions: tuple[float, ...]
     loads: tuple[float, float, int] | None = None
+    asked_from: float | None = None
     residual: tuple[float, ...] = ()
     ball: Ball | None = None
     above: Coatings = ()
@@ -94,8 +99,11 @@ class Study:
     cross_check: int = 10
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
     criteria: Criteria = field(default_factory=Criteria)
+    source: str = ""
     text: str = ""
     warnings: tuple[str, ...] = ()
+    hardness: Limits = field(default_factory=dict)
+    names: dict[str, str] = field(default_factory=dict)
     units: Units = field(default_factory=Units)
 
     @property
@@ -181,7 +189,7 @@ class _Problem(Sized):
     coating: Coating | None = None
     coatings: Annotated[list[Coating], Field(default_factory=list, max_length=10)]
     ball: BallEntry | None = None
-    temperature_change: TemperatureChange | None = None
+    temperature_change: solid_schema.TemperatureChange | None = None
 
     @model_validator(mode="after")
     def _one_swept(self) -> "_Problem":
@@ -205,6 +213,20 @@ class _Problem(Sized):
     def varied(self) -> Coating:
         """The coating that is swept."""
         return self.coating or self.coatings[self.swept]
+
+    def limits(self) -> dict[str, float]:
+        """Hardness and yield strength [Pa] of every material that has one, by their keys."""
+        layers = {"substrate": self.substrate} | {f"coatings.{i}": one for i, one in enumerate(self.coatings)}
+        layers |= {"coating": self.coating} if self.coating else {}
+        found = {key: value for name, one in layers.items() for key, value in one.limits(name).items()}
+        return found | (self.ball.all_limits() if self.ball else {})
+
+    def names(self) -> dict[str, str]:
+        """The names that are given, by the keys of their layers."""
+        layers: dict[str, Limited | None] = {"substrate": self.substrate, "coating": self.coating}
+        layers |= {f"coatings.{i}": one for i, one in enumerate(self.coatings)} | {"ball": self.ball}
+        layers |= {f"ball.coatings.{i}": one for i, one in enumerate(self.ball.coatings if self.ball else [])}
+        return {key: one.name for key, one in layers.items() if one is not None and one.name}
 
     @property
     def modulus(self) -> float | None:
@@ -282,7 +304,7 @@ class _Fem(Strict):
 
 class _StudyFile(Strict):
     title: Text
-    source: Text = "no source stated"
+    source: Text = NO_SOURCE
     problem: _Problem
     sweep: _Sweep
     semianalytic: _Semianalytic = _Semianalytic()
@@ -299,9 +321,16 @@ def parse_study(raw: bytes, path: Path) -> Study:
     """Check the content of a study file; ``path`` names it in messages. Raises CaseError."""
     text, checked = read_toml(raw, path, _StudyFile)
     p, sweep = checked.problem, checked.sweep
+    try:
+        criteria = checked.criteria.with_yield_strengths(limits := p.limits())
+    except ValueError as error:
+        raise CaseError(f"{path}: problem.{error}") from None
     coatings = p.ball.coatings if p.ball else []
-    if any(c.residual_stress or c.expansion for c in coatings):
-        raise CaseError(f"{path}: ball, coatings: leave residual out, for no stress of the ball is judged")
+    if any(one.expansion for one in (p.ball, *coatings) if one) or any(c.residual_stress for c in coatings):
+        raise CaseError(f"{path}: ball: leave residual, expansion out, for no stress of the ball is judged")
+    if p.varied.expansion is None and (p.substrate.expansion, p.temperature_change) != (None, None):
+        key = "temperature_change" if p.substrate.expansion is None else "substrate.expansion"
+        raise CaseError(f"{path}: {key}: acts on no coating; give the expansion of the swept one")
     if (p.load is None) == (sweep.load is None):
         raise CaseError(f"{path}: needs exactly one of load or sweep.load")
     if sweep.load is not None and len(p.coatings) > 1:
@@ -374,8 +403,11 @@ def parse_study(raw: bytes, path: Path) -> Study:
             for source in SOURCES
             if source in _StudyFile.model_fields
         },
-        criteria=checked.criteria,
+        criteria=criteria,
+        source=checked.source,
         text=text,
+        hardness={key: value for key, value in limits.items() if key.endswith("hardness")},
+        names=p.names(),
         warnings=(
             *_warnings(bare, ball, thicknesses, checked),
             *(
@@ -402,14 +434,12 @@ def _warnings(
 ) -> tuple[str, ...]:
     """Those of the thinnest coating and the thickest, each line once."""
     p = checked.problem
-    limits = p.substrate.limits("substrate") | p.varied.limits("coating")
-    limits |= p.ball.all_limits() if p.ball else {}
     found = [
         line.replace("coating 1, ", "coating, ")
         # A ratio has no unit.
         for E in ([p.modulus] if p.modulus else [p.substrate.E])
         for h in (min(thicknesses), max(thicknesses))
-        for line in warnings_of(replace(bare, coatings=((E, p.varied.nu, h),), ball=ball), limits)
+        for line in warnings_of(replace(bare, coatings=((E, p.varied.nu, h),), ball=ball))
     ]
     return (*dict.fromkeys(found), *checked.criteria.warnings())
 

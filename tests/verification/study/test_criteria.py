@@ -163,18 +163,21 @@ def test_equally_good_thicknesses_are_those_within_the_tolerance(found):
     [
         (3.1416, 0.0, None, "3.1"),
         (3.1416, 0.02, None, "3.1"),
-        (3.1416, 0.2, None, "3"),
+        (3.1416, 0.2, None, "3.1"),
+        (3.1416, 2.0, None, "3"),
         (3.1416, 0.0, True, "3.2"),
         (3.1616, 0.0, False, "3.1"),
         (41.9, 0.3, True, "42"),
-        (41.9, 3.0, False, "40"),
+        (41.9, 3.0, False, "41"),
+        (41.9, 30.0, False, "40"),
         (41.9, 300.0, None, "40"),
         (0.0314, 0.0, None, "0.031"),
         (2.0, 0.0, True, "2.0"),
-        (950.0, 40.0, True, "1000"),
+        (950.0, 40.0, True, "950"),
+        (950.0, 400.0, True, "1000"),
     ],
 )
-def test_no_number_is_finer_than_its_uncertainty(value, uncertainty, upwards, text):
+def test_no_number_is_finer_than_the_first_digit_of_its_uncertainty(value, uncertainty, upwards, text):
     assert rounded(value, uncertainty, upwards) == text
 
 

@@ -8,7 +8,7 @@ from synthetic_solves import STUDY
 
 from verification.cases.toml_file import CaseError
 from verification.problem.coated_contact import CoatedContact
-from verification.study.choice.critical_load import Critical, Ramp, critical, ramps
+from verification.study.choice.critical_load import Critical, Ramp, critical, extended, ramps
 from verification.study.choice.failure_criteria import Criteria, Uniform
 from verification.study.largest_stresses import QUANTITIES
 from verification.study.pages.load_page import answers, write_load_report
@@ -59,6 +59,68 @@ def test_critical_load_of_a_power_law_is_exact(residual):
     assert found.share["sigma_xx_surface"] == 1
 
 
+def test_below_the_ramp_no_mode_is_the_first_of_several():
+    """All reached at once: no load is stated, and no mode for its place in a list."""
+    ramp, between = power_law(np.geomspace(20, 60, 5)), (20.0, 60.0)
+    weak = {"sigma_xx_surface": 0.5e8, "sigma_xz_interface": 0.2e8, "von_mises_substrate": 9e9}
+    found = critical(ramp, Criteria(strength=weak), between)
+    assert (found.mode, found.unresolved, found.first) == (None, 1.0, (0.0, 0.0, 0.0))
+    assert all(share == 0 for share in found.share.values())
+    assert all((fails == 0).all() for fails in found.fails.values())
+    study = parse_study(EQUAL.encode(), Path("ramp.toml"))
+    (said,) = answers(study, [found])
+    assert "below 20 N, the first mode is not resolved among: the coating cracks at its surface, the" in said
+    # one mode alone below the ramp is the first, at a load that is not known
+    one = critical(ramp, Criteria(strength=weak | {"sigma_xz_interface": 0.9e8}), between)
+    assert (one.mode, one.unresolved, one.first[1]) == ("sigma_xx_surface", 0.0, 0.0)
+    assert "below 20 N" in answers(study, [one])[0]
+
+
+def solved_table(text, path, study=None):
+    """The study of ``text`` with its table of closed forms at ``path``."""
+    study, rows = study or parse_study(text.encode(), path.with_suffix(".toml")), []
+    for one in study.solves():
+        made = [_closed(one.request, f) for f in one.request["frictions"]]
+        found = {"rows": made, "versions": {}, "seconds": 0.0}
+        rows += table_rows(one.first, one.key, one.request, found, one.places)
+    write_table(path, rows, {"name": path.stem, "text": text})
+    return study
+
+
+@pytest.mark.parametrize("begin", [5.0, 40.0, 70.0])
+def test_a_ramp_that_begins_too_high_gives_the_answer_of_one_that_does_not(begin, tmp_path):
+    """Every stress is (0.3 + f) p_h: its strength S is reached at W with p_h = S/(0.3 + f)."""
+    text = EQUAL.replace("from = 5.0", f"from = {begin}").replace('"1 GPa"', '"0.3 GPa"')
+    path = tmp_path / "ramp.parquet"
+    study = solved_table(text, path)
+    for _ in range(3):
+        lower = extended(study, read_columns(path))
+        if lower is None:
+            break
+        assert lower.loads[0] < study.loads[0]
+        assert lower.asked_from == begin
+        study = solved_table(text, path, lower)
+    else:
+        pytest.fail("no ramp is low enough")
+    for ramp in ramps(read_columns(path)):
+        found = critical(ramp, study.criteria, study.loads[:2])
+        at_5 = CoatedContact(10e-3, 5.0, (), (210e9, 0.3)).p_h
+        exact = 5.0 * (0.3e9 / ((0.3 + ramp.friction) * at_5)) ** 3
+        assert found.first[1] == pytest.approx(exact, rel=1e-3)
+        assert (found.mode, found.unresolved) == ("sigma_xx_surface", 0.0)
+        assert sum(fails[0] for fails in found.fails.values()) < 2e-3
+
+
+def test_a_strength_that_the_residual_stress_exceeds_needs_no_lower_ramp(tmp_path):
+    text = EQUAL.replace("nu = 0.3 }\n[sweep]", 'nu = 0.3, residual_stress = "2 GPa" }\n[sweep]')
+    assert text != EQUAL
+    ramp = power_law(np.geomspace(5, 80, 5), 2e9)
+    found = critical(ramp, Criteria(strength={"sigma_xx_surface": 1e9}), (5.0, 80.0))
+    assert found.at_rest == ("sigma_xx_surface",)
+    study = parse_study(text.encode(), Path("ramp.toml"))
+    assert "without any load, by the residual stress" in answers(study, [found])[0]
+
+
 def test_scatter_of_a_strength_is_that_of_its_critical_load():
     # W = (S / 0.3e8)^3 with S uniform: the quantiles of W are those of S
     given = Uniform(**{"from": 0.6e8, "to": 1.0e8})
@@ -107,13 +169,7 @@ def test_a_row_at_another_load_is_what_a_solve_of_its_own_gives():
 @pytest.mark.slow
 def test_report_of_a_load_study_answers_first(tmp_path):
     text = EQUAL.replace("thickness = [5e-5]", 'thickness = ["50 um", "60 um"]')
-    study = parse_study(text.encode(), tmp_path / "ramp.toml")
-    rows = []
-    for one in study.solves():
-        made = [_closed(one.request, f) for f in one.request["frictions"]]
-        found = {"rows": made, "versions": {}, "seconds": 0.0}
-        rows += table_rows(one.first, one.key, one.request, found, one.places)
-    write_table(tmp_path / "ramp.parquet", rows, {"name": "ramp", "text": text})
+    study = solved_table(text, tmp_path / "ramp.parquet")
     written = write_load_report(tmp_path / "ramp.parquet", study, tmp_path)
     page = written.page.read_text()
     assert written.answer[0].startswith("50 µm, f = 0.25: ")

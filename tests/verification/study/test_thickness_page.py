@@ -95,6 +95,15 @@ def test_answer_is_the_first_line_and_inputs_come_next(folder):
     assert all(number in before for number in ("105, 420", "0.5, 2", "800"))
 
 
+def test_headline_and_table_state_one_range(folder):
+    """Of each modulus: the range of the answer, at all frictions together, is a row of the table."""
+    text = re.sub(r"<[^>]+>", " ", (folder / "study.html").read_text())
+    said = re.findall(r"([\d.]+ to [\d.]+) µm[^.]*? stress the bodies least", text)
+    rows = re.findall(r"0 to 0\.25\s+(?:about )?([\d.]+(?: to [\d.]+)?)", text)
+    assert len(rows) == 2
+    assert set(said) == set(rows)
+
+
 @pytest.mark.slow
 def test_no_label_or_legend_of_a_figure_is_cut(report, monkeypatch):
     cut = []

@@ -29,6 +29,7 @@ from verification.report.tables.case_tables import (
     facts,
     failing_table,
     layer_table,
+    stress_table,
 )
 from verification.report.tables.line_csv import line_csv
 from verification.running.case_result import CaseResult
@@ -47,7 +48,7 @@ def contents(material: Material, result: CaseResult, anchor: str) -> dict[str, A
         "command": rerun_command(result.name, material.info.command),
         "facts": facts(problem),
         "failures": [(source_label(s.source), s.failure) for s in result.sources if s.failure is not None],
-        "layers": [layer_table(problem), *([layer_table(problem, BALL)] if ball else [])],
+        "layers": [layer_table(result), *([layer_table(result, BALL)] if ball else [])],
         "failing": failing_table(verdicts, a_h),
         "budget": budget_table(result),
         "diagnostics": diagnostics_table(result.sources),
@@ -55,6 +56,7 @@ def contents(material: Material, result: CaseResult, anchor: str) -> dict[str, A
     if result.published:
         tables = published_section.tables(result)
         return common | {"tables": tables, "comparisons": comparison_table(verdicts)}
+    designed = material.evidence.designed.get(result.name)
     broken = [one for one in result.invariants if one.outcome is not Outcome.AGREES]
     return common | {
         "file": file,
@@ -66,6 +68,9 @@ def contents(material: Material, result: CaseResult, anchor: str) -> dict[str, A
         "beyond": material.evidence.beyond.get(result.name, ()),
         "maps": material.evidence.maps is not None,
         "model": material.evidence.models.get(result.name),
+        "residual": bool(result.stated.get("residual")),
+        "designed": designed,
+        "stresses": stress_table(result, designed) if designed else None,
         "files": [
             (line, line_csv(result.profiles, line), f"{file}-{slug(line)}.csv")
             for line in dict.fromkeys(profile.line for profile in result.profiles)

@@ -1,13 +1,15 @@
 """The tables of one case: contact, verdicts, uncertainty budget, run times."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from math import isfinite, isinf
 from typing import Any
 
+from verification.desk.answer_stresses import Extreme
+from verification.desk.layer_limits import Designed
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.number_text import aligned, engineering, plain, scientific
-from verification.page.page_parts import Cell, Table, number, outcome_cell, row, table_of
+from verification.page.page_parts import Cell, Table, Value, number, outcome_cell, row, table_of
 from verification.page.source_labels import OUTCOMES, pair_label, row_css, source_label, symbol_of
 from verification.problem.coated_contact import BALL, FLAT
 from verification.problem.indenter_shape import SHAPES
@@ -54,11 +56,13 @@ def facts(problem: Mapping[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def layer_table(problem: Mapping[str, Any], body: str = FLAT) -> Table:
+def layer_table(result: CaseResult, body: str = FLAT) -> Table:
     """The layers of a body from its surface inwards, in real units and against its bare substrate.
 
-    Thicknesses are over a_h, or over the radius of a prescribed load.
+    Thicknesses are over a_h, or over the radius of a prescribed load. With names, residual stresses, limits
+    where the case states any.
     """
+    problem = result.problem
     length = "a" if "load_radius" in problem else "a_h"
     a_h = scale(problem, "load_radius" if length == "a" else "a_h")
     found = layers(problem, body)
@@ -76,6 +80,63 @@ def layer_table(problem: Mapping[str, Any], body: str = FLAT) -> Table:
             ("nu", lambda at: number(at[1][1], plain)),
             ("h", lambda at: thickness(at[1][2], engineering(at[1][2], "m"))),
             (f"h / {length}", lambda at: thickness(at[1][2], plain(at[1][2] / a_h, 3) if a_h > 0 else "–")),
+            *_stated_columns(result, body, len(found)),
+        ],
+    )
+
+
+def _stated_columns(result: CaseResult, body: str, count: int) -> list[tuple[str, Callable[[Any], Value]]]:
+    """Columns of what a case states of the ``count`` layers of a body beside its problem, none without."""
+    stated = result.stated
+    sublayers = [*(stated.get("layers", {}).get(body) or [1] * (count - 1)), 1]
+    coating = [i for i, n in enumerate(sublayers) for _ in range(n)]  # that each layer belongs to
+    names = stated.get("names", {}).get(body, ())
+    residual = [*stated.get("residual", {}).get(body, ()), 0.0]
+    before, columns = (f"{BALL}." if body == BALL else ""), list[tuple[str, Callable[[Any], Value]]]()
+
+    def limit(name: str) -> Callable[[Any], Value]:
+        def cell(at: Any) -> Value:
+            base = BALL if body == BALL else "substrate"
+            layer = base if at[0] == count else f"{before}coatings.{coating[at[0] - 1]}"
+            value = stated["limits"].get(f"{layer}.{name}")
+            return "" if value is None else Cell(engineering(value, "Pa"), value)
+
+        return cell
+
+    if any(names):
+        columns.append(("name", lambda at: names[coating[at[0] - 1]]))
+    if any(residual):
+        columns.append(
+            ("residual stress", lambda at: Cell(engineering(residual[at[0] - 1], "Pa"), residual[at[0] - 1]))
+        )
+    for name in ("hardness", "yield_strength"):
+        if any(
+            key.endswith(name) and (body == BALL) == key.startswith(BALL) for key in stated.get("limits", {})
+        ):
+            columns.append((name.replace("_", " "), limit(name)))
+    return columns
+
+
+def stress_table(result: CaseResult, found: Designed) -> Table:
+    """The largest stresses of a case with its residual stresses, then how far each layer is from yielding."""
+    yielding = {(one.body, one.where): one for one in found.limits if one.yield_strength is not None}
+    a_h = scale(result.problem, "a_h")
+
+    def used(at: Extreme) -> Value:
+        one = yielding.get((at.body, at.where)) if at.quantity == "von_mises" else None
+        return "" if one is None else Cell(f"{one.utilisation:.0%} of the yield strength; {one.begins}")
+
+    return table_of(
+        "By the semi-analytical method, with residual stresses.",
+        found.extremes,
+        [
+            ("largest", lambda at: symbol_of(at.quantity)),
+            ("place", lambda at: at.where if at.body == FLAT else f"{at.body}, {at.where}"),
+            ("value", lambda at: Cell(engineering(at.value, "Pa", 4), at.value)),
+            ("±", lambda at: Cell(engineering(at.uncertainty, "Pa", 1), at.uncertainty)),
+            ("x / a_h", lambda at: number(at.x / a_h, "{:.3g}".format)),
+            ("z / a_h", lambda at: number(at.z / a_h, "{:.3g}".format)),
+            ("yielding", used),
         ],
     )
 

@@ -5,22 +5,28 @@ part; p_h itself grows as W^(1/3). Where strengths scatter, so does the critical
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from math import ceil, log10
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from verification.cases.case_file import SUPPORTED
 from verification.problem.array_types import Array
 from verification.study.choice.failure_criteria import Criteria
 from verification.study.choice.thickness_choice import HALVED, strengths_drawn
 from verification.study.largest_stresses import QUANTITIES
+from verification.study.study_plan import Study
 from verification.study.study_table import SOURCES
 
 SAMPLES = 2001  # of a ramp
 BAND = (0.05, 0.5, 0.95)  # quantiles of a critical load
 STRESSED = ("sigma_xx_surface", "sigma_xx_base")  # to which the residual stress is added
+WEAKEST = 1e-3  # share of strengths that may be reached below the first load of a ramp
+MARGIN = 0.5  # of the load at which a ramp begins, as estimated from that of Hertz
+DECADE = 8  # loads in each decade of a ramp that was extended
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,6 +61,12 @@ class Ramp:
             worst = max(worst, abs(float(here[0] - value[i])))
         return (worst / HALVED + float(U.max())) / largest
 
+    def at_rest(self, mode: str) -> float:
+        """The stress of a ``mode`` [Pa] at no load: that of the residual stress, negative in compression."""
+        if mode in STRESSED:
+            return self.residual
+        return abs(self.residual) if mode == "von_mises_coating" else 0.0
+
     def _interpolated(self, known: Array, stress: Array, load: Array, mode: str) -> Array:
         scale = self.p_h[0] / self.load[0] ** (1 / 3)
         added = self.residual if mode in STRESSED else 0.0
@@ -73,7 +85,10 @@ class Ramp:
 class Critical:
     """Critical loads [N] of a ramp: quantiles ``BAND``, inf where the strength is not reached within it.
 
+    A load is 0 where the strength is reached below the first load of the ramp.
     of : by mode.   first : of the first mode.   share : by mode, the probability that it is the first.
+    unresolved : the probability that several are reached at once, as below the ramp, and none is the first.
+    at_rest : the modes whose strength the residual stress reaches alone.
     uncertainty : of the median load of each mode, numerical.   fails : probability of failure at ``load``.
     """
 
@@ -84,12 +99,14 @@ class Critical:
     uncertainty: Mapping[str, float]
     load: Array
     fails: Mapping[str, Array]
+    unresolved: float = 0.0
+    at_rest: tuple[str, ...] = ()
 
     @property
     def mode(self) -> str | None:
-        """The mode that most often is the first; None where none is reached."""
+        """The mode that most often is the first; None where none is reached, or it is not resolved."""
         best = max(self.share, key=lambda mode: self.share[mode])
-        return best if self.share[best] > 0 else None
+        return best if self.share[best] > self.unresolved else None
 
 
 def critical(ramp: Ramp, criteria: Criteria, between: tuple[float, float]) -> Critical:
@@ -114,7 +131,8 @@ def critical(ramp: Ramp, criteria: Criteria, between: tuple[float, float]) -> Cr
         uncertainty[mode] = float(load[at] * error / slope[at]) if slope[at] > 0 else float("nan")
     every = np.stack(loads, axis=1)
     earliest, which = every.min(axis=1), every.argmin(axis=1)
-    reached = np.isfinite(earliest)
+    tied = np.isfinite(earliest) & ((every == earliest[:, None]).sum(axis=1) > 1)
+    reached = np.isfinite(earliest) & ~tied
     return Critical(
         ramp,
         {mode: _band(every[:, k]) for k, mode in enumerate(strengths)},
@@ -123,17 +141,45 @@ def critical(ramp: Ramp, criteria: Criteria, between: tuple[float, float]) -> Cr
         uncertainty,
         load,
         {
-            mode: np.searchsorted(np.sort(earliest[which == k]), load, side="right") / len(every)
+            mode: np.searchsorted(np.sort(earliest[reached & (which == k)]), load, side="right") / len(every)
             for k, mode in enumerate(strengths)
         },
+        float(tied.mean()),
+        tuple(mode for mode in strengths if criteria.safety * ramp.at_rest(mode) >= nominal[mode]),
     )
 
 
+def extended(study: Study, columns: Mapping[str, NDArray[Any]]) -> Study | None:
+    """The ``study`` with loads that begin lower, as far as its table ``columns`` shows that they have to.
+
+    None where every mode is below its strength at the first load, its residual stress alone reaches it, or
+    no lower load is supported.
+    """
+    assert study.loads is not None
+    low, high, count = study.loads
+    lower = low
+    for ramp in ramps(columns):
+        for mode, strength in study.criteria.given().items():
+            least = float(strength.quantile(WEAKEST)) / study.criteria.safety
+            rest, stress = ramp.at_rest(mode), float(ramp.at(np.array([low]), mode)[0])
+            if rest < least <= stress:
+                # The part of the contact grows as the cubic root of the load.
+                lower = min(lower, MARGIN * low * ((least - rest) / (stress - rest)) ** 3)
+    thick = max(study.thicknesses) / (SUPPORTED[1] * study.bare.a_h)
+    lower = max(lower, 1.001 * study.load * thick**3)
+    if lower > 0.999 * low:
+        return None
+    every = max(count, ceil(DECADE * log10(high / lower)) + 1)
+    asked = study.asked_from if study.asked_from is not None else low
+    return replace(study, loads=(lower, high, every), asked_from=asked)
+
+
 def _reached(load: Array, stress: Array, strength: Array) -> Array:
-    """The load [N] at which ``stress``, which never falls, reaches each ``strength``; else inf."""
+    """The load [N] at which ``stress``, which never falls, reaches each ``strength``; else 0 or inf."""
     rising = np.append(True, np.diff(stress) > 0)
     exponent = np.interp(strength, stress[rising], np.log(load[rising]))
-    return np.where(strength > stress[-1], np.inf, np.exp(exponent))
+    within = np.where(strength > stress[-1], np.inf, np.exp(exponent))
+    return np.where(strength < stress[0], 0.0, within)
 
 
 def _band(loads: Array) -> tuple[float, float, float]:

@@ -23,6 +23,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from scipy.interpolate import PchipInterpolator
 from scipy.special import ndtri
 
+from verification.cases.plausibility import Limits
 from verification.cases.toml_file import Strict
 from verification.cases.unit_numbers import InSI, Pascals
 from verification.problem.array_types import Array
@@ -128,6 +129,28 @@ class Criteria(Strict):
         if self.strength is not None and self.minimise is not None:
             raise ValueError("takes strength or minimise, not both")
         return self
+
+    def with_yield_strengths(self, limits: Limits) -> "Criteria":
+        """These with the yield strengths among ``limits`` as the strengths of the von Mises stresses.
+
+        limits : [Pa] by the keys of a file.   Raises ValueError for one by which a study judges nothing.
+        """
+        modes = {"substrate": "von_mises_substrate", "coating": "von_mises_coating"}
+        strength: dict[Any, Any] = dict(self.strength or {})
+        for key, value in limits.items():
+            layer, _, name = key.rpartition(".")
+            if name != "yield_strength":
+                continue
+            if (mode := modes.get(layer)) is None:
+                judged = (
+                    "no stress of the ball" if layer.startswith("ball") else "all coatings together, no one"
+                )
+                raise ValueError(f"{key}: a study judges {judged}; leave it out, see criteria.strength")
+            if mode in strength or self.minimise is not None:
+                other = "minimise" if self.minimise is not None else f"strength.{mode}"
+                raise ValueError(f"{key}: not with criteria.{other}; give one of both")
+            strength[mode] = value
+        return self.model_copy(update={"strength": strength or None})
 
     def warnings(self) -> tuple[str, ...]:
         """A line for each implausible strength."""

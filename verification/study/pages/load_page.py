@@ -8,6 +8,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from verification.page.page_parts import Cell, Part, Section, number, table_of
 from verification.study.choice.critical_load import Critical, critical, ramps
+from verification.study.choice.elastic_limits import beyond_elastic
 from verification.study.choice.failure_criteria import MODES
 from verification.study.pages.study_assembly import Draw, Written, common_sections, write_page
 from verification.study.pages.study_figures import (
@@ -55,7 +56,9 @@ def write_load_report(
     first = Section("critical", "Critical loads", [Part(text) for text in said] + [_table(study, found)])
     sections = [first, *common_sections(study, folder, draws, columns, failures, drawing)]
     summary = said[0] if said else f"No answer: no ramp of {study.title} has four solved loads."
-    return write_page(table, study, folder, said, summary, sections, [], facts)
+    return write_page(
+        table, study, folder, said, summary, sections, [], facts, beyond_elastic(study, columns)
+    )
 
 
 def answers(study: Study, found: Sequence[Critical]) -> list[str]:
@@ -79,23 +82,30 @@ def _weakest(found: Sequence[Critical]) -> list[Critical]:
 
 def _said(one: Critical) -> str:
     mode, last = one.mode, one.load[-1]
+    low, middle, high = one.first
+    if mode is None and one.unresolved:
+        at = _newtons(middle, float("nan"), one)
+        reached = [MODES[mode] for mode, (_, load, _) in one.of.items() if load == middle]
+        return f"{at}, the first mode is not resolved among: {', '.join(reached)}"
     if mode is None:
         return f"no stress reaches its strength up to {last:.3g} N"
-    low, middle, high = one.first
     U = one.uncertainty[mode]
-    share = one.share[mode] / sum(one.share.values())
+    share = one.share[mode] / (sum(one.share.values()) + one.unresolved)
     first = f"{MODES[mode]} first" + (f", in {100 * share:.0f} % of the failures" if share < 0.995 else "")
-    if middle <= one.load[0]:
-        return f"below {one.load[0]:.3g} N {first}"
-    text = f"critical load {_newtons(middle, U, last)}"
+    if middle == 0:
+        rest = ", without any load, by the residual stress" if mode in one.at_rest else ""
+        return f"below {one.load[0]:.3g} N {first}{rest}"
+    text = f"critical load {_newtons(middle, U, one)}"
     if low != high:
-        least = _newtons(low, U, last).removesuffix(" N")
-        text += f" ({least} to {_newtons(high, U, last)} in 90 % of the strengths)"
+        least = _newtons(low, U, one).removesuffix(" N")
+        text += f" ({least} to {_newtons(high, U, one)} in 90 % of the strengths)"
     return f"{text}: {first}"
 
 
-def _newtons(value: float, uncertainty: float, last: float) -> str:
-    return f"above {last:.3g} N" if not np.isfinite(value) else f"{rounded(value, uncertainty)} N"
+def _newtons(value: float, uncertainty: float, one: Critical) -> str:
+    if value == 0:
+        return f"below {one.load[0]:.3g} N"
+    return f"above {one.load[-1]:.3g} N" if not np.isfinite(value) else f"{rounded(value, uncertainty)} N"
 
 
 def _table(study: Study, found: Sequence[Critical]) -> Part:
@@ -105,20 +115,20 @@ def _table(study: Study, found: Sequence[Critical]) -> Part:
         def cell(item: tuple[Critical, str]) -> Cell:
             one, mode = item
             value = one.of[mode][quantile]
-            return Cell(_newtons(value, one.uncertainty[mode], float(one.load[-1]))[: -len(" N")], value)
+            return Cell(_newtons(value, one.uncertainty[mode], one)[: -len(" N")], value)
 
         return cell
 
     def p0(item: tuple[Critical, str]) -> float | None:
         middle = item[0].of[item[1]][1]
         ramp = item[0].ramp
-        pressure = np.interp(np.log(middle), np.log(ramp.load), ramp.p0) / units.pascal
-        return float(pressure) if np.isfinite(middle) else None
+        pressure = np.interp(np.log(max(middle, ramp.load[0])), np.log(ramp.load), ramp.p0) / units.pascal
+        return float(pressure) if 0 < middle < np.inf else None
 
     table = table_of(
         "Critical load [N] of each failure mode whose strength some sample reaches within the ramp: its 5 %, "
         "50 %, 95 % quantiles, the numerical uncertainty of the median, the peak pressure there; last the "
-        "probability that this mode is the first within the ramp.",
+        "probability that this mode is the first, none where several are reached below the ramp.",
         [(one, mode) for one in found for mode in one.of if np.isfinite(one.of[mode][0])],
         [
             ("E1/E2", lambda item: number(item[0].ramp.ratio, "{:.4g}".format)),
@@ -131,7 +141,7 @@ def _table(study: Study, found: Sequence[Critical]) -> Part:
             ("5 %", load(0)),
             ("50 %", load(1)),
             ("95 %", load(2)),
-            ("±", lambda item: item[0].uncertainty[item[1]] if np.isfinite(item[0].of[item[1]][1]) else None),
+            ("±", lambda item: item[0].uncertainty[item[1]] if 0 < item[0].of[item[1]][1] < np.inf else None),
             (f"p0 [{units.stress}]", lambda item: number(p0(item), "{:.3g}".format)),
             ("first", lambda item: number(item[0].share[item[1]], "{:.0%}".format)),
         ],
@@ -167,11 +177,12 @@ def _maps(study: Study, found: Sequence[Critical]) -> list[Drawn]:
                     [f"{ratio:g}", f"{friction:g}", f"{x:.6g}", mode, *(f"{v:.6g}" for v in values)]
                     for x, values in zip(h, band, strict=True)
                 ]
-                shown = np.where(np.isfinite(band), band, 10 * high)
+                shown = np.where(np.isfinite(band), np.maximum(band, low / 10), 10 * high)
                 axes.fill_between(h, shown[:, 0], shown[:, 2], color=colour, linewidth=0, alpha=0.27)
                 axes.plot(h, shown[:, 1], color=colour, label=mode, marker=".", markersize=3)
             first = np.array([one.first[1] for one in members])
-            axes.plot(h, np.where(np.isfinite(first), first, 10 * high), color="black", linewidth=0.9,
+            first = np.where(np.isfinite(first), np.maximum(first, low / 10), 10 * high)
+            axes.plot(h, first, color="black", linewidth=0.9,
                       linestyle=DASHES[1], label="first of all")  # fmt: skip
             axes.set_yscale("log")
             axes.set_ylim(0.9 * low, 1.1 * high)
@@ -218,9 +229,10 @@ def _tracks(study: Study, found: Sequence[Critical]) -> list[Drawn]:
             upper.set_ylabel("stress over strength")
             upper.set_ylim(0, max(1.4, min(2.5, max(float(u.max()) for u in use.values()))))
             upper.grid(True, linewidth=0.3, color="#cccccc")
-            lower.stackplot(
-                one.load, *one.fails.values(), colors=[pale(c) for c in colours.values()], linewidth=0
-            )
+            # below the ramp, in grey, several modes without a first
+            tied = np.full(one.load.shape, one.unresolved)
+            shades = ["#bbbbbb", *(pale(c) for c in colours.values())]
+            lower.stackplot(one.load, tied, *one.fails.values(), colors=shades, linewidth=0)
             lower.set_ylim(0, 1)
             lower.set_ylabel("probability\nof failure")
             lower.set_xlabel("load [N]")

@@ -36,10 +36,14 @@ Draw = tuple[str, str, Callable[[], list[Drawn]]]  # anchor, title, function tha
 
 @dataclass(frozen=True)
 class Written:
-    """The ``page`` of a study and its ``answer``, a line for each coating."""
+    """The ``page`` of a study and its ``answer``, a line for each coating.
+
+    warnings : a line for each limit of elasticity that a solved point exceeds.
+    """
 
     page: Path
     answer: tuple[str, ...]
+    warnings: tuple[str, ...] = ()
 
 
 def write_page(
@@ -51,17 +55,20 @@ def write_page(
     sections: Sequence[Section],
     counts: Sequence[tuple[str, str]],
     facts: Sequence[tuple[str, str]],
+    warnings: tuple[str, ...] = (),
 ) -> Written:
     """NAME.html under ``folder`` on the ``table`` of ``study``.
 
     summary : the line on top.   counts, facts : (name, value) pairs, before and after its warnings.
+    warnings : of its solved points.
     Raises StoreError where it cannot be written.
     """
     page = folder / f"{study.name}.html"
-    head = [("study", study.title), *counts, *(("implausible", text) for text in study.warnings), *facts]
+    told = [("implausible", text) for text in study.warnings] + [("beyond", text) for text in warnings]
+    head = [("study", study.title), ("source", study.source), *counts, *told, *facts]
     footer = f"Written by coatcheck from {table.name} beside this file."
     write_atomically(page, render_sections("coatcheck study", summary, head, sections, footer))
-    return Written(page, tuple(answer))
+    return Written(page, tuple(answer), warnings)
 
 
 def common_sections(
@@ -94,11 +101,19 @@ def _inputs_section(study: Study) -> Section:
     """Every input and assumption in one table."""
     units, bare = study.units, study.bare
     E_ball = "rigid" if study.ball is None else _solid(*study.ball[:2])
-
-    def layers(coatings: Coatings) -> list[str]:
-        return [f"{_solid(E, nu)}, {units.shown_length(h)}" for E, nu, h in coatings]
-
     moduli = ", ".join(f"{E / 1e9:.4g}" for E in study.moduli)
+
+    def layers(coatings: Coatings, key: str, first: int = 0) -> list[str]:
+        solids = (f"{_solid(E, nu)}, {units.shown_length(h)}" for E, nu, h in coatings)
+        return [called(f"{key}.{i}", text) for i, text in enumerate(solids, start=first)]
+
+    def called(key: str, text: str) -> str:
+        return f"{study.names[key]}, {text}" if key in study.names else text
+
+    n = len(study.above)
+    own = called(f"coatings.{n}" if study.above + study.below else "coating", f"E = {moduli} GPa")
+    fixed = {"above": layers(study.above, "coatings"), "below": layers(study.below, "coatings", n + 1)}
+
     ratios = ", ".join(f"{E / study.substrate[0]:.3g}" for E in study.moduli)
     h = study.thicknesses
     swept = (
@@ -107,15 +122,15 @@ def _inputs_section(study: Study) -> Section:
     )
     strengths = study.criteria.given(units.shown_stress)
     rows = [
-        row("ball", f"R = {study.radius * 1e3:g} mm, {E_ball}"),
+        row("ball", called("ball", f"R = {study.radius * 1e3:g} mm, {E_ball}")),
         *(
             row(f"coating {i} on the ball", text)
-            for i, text in enumerate(layers(study.ball[2] if study.ball else ()), start=1)
+            for i, text in enumerate(layers(study.ball[2] if study.ball else (), "ball.coatings"), start=1)
         ),
-        row("load", f"{study.load:g} N" if study.loads is None else "{:g} to {:g} N".format(*study.loads)),
-        row("substrate", _solid(*study.substrate)),
-        row("coating", f"E = {moduli} GPa (E1/E2 = {ratios}), nu = {study.coating_nu:g}"),
-        *(row(f"{side} it", ", ".join(layers(fixed))) for side, fixed in study.fixed.items() if fixed),
+        row("load", _load(study)),
+        row("substrate", called("substrate", _solid(*study.substrate))),
+        row("coating", f"{own} (E1/E2 = {ratios}), nu = {study.coating_nu:g}"),
+        *(row(f"{side} it", "; ".join(held)) for side, held in fixed.items() if held),
         row("thickness", swept),
         row("friction", ", ".join(f"{f:g}" for f in study.frictions)),
         row(
@@ -128,6 +143,7 @@ def _inputs_section(study: Study) -> Section:
             f"delta_h = {units.shown_length(bare.delta_h)}",
         ),
         *(row(f"strength, {mode}", f"{one.text} ({MODES[mode]})") for mode, one in strengths.items()),
+        *(row(key, units.shown_stress(value)) for key, value in study.hardness.items()),
         row("safety factor on every stress", f"{study.criteria.safety:g}"),
         row(
             "assumed",
@@ -137,6 +153,15 @@ def _inputs_section(study: Study) -> Section:
     ]
     rows = [Row(one.head, [Cell(cell.text, css="words") for cell in one.cells]) for one in rows]
     return Section("inputs", "Inputs and assumptions", [Part("", [Table("", ["input", "value"], rows)])])
+
+
+def _load(study: Study) -> str:
+    if study.loads is None:
+        return f"{study.load:g} N"
+    text = "{:.3g} to {:g} N".format(*study.loads)
+    if study.asked_from is None:
+        return text
+    return f"{text}; extended down from {study.asked_from:g} N, where strengths were exceeded already"
 
 
 def _check_section(checks: Sequence[Difference]) -> Section:

@@ -12,7 +12,8 @@ import numpy as np
 from verification.cases.unit_numbers import Units
 from verification.page.page_parts import Cell, Part, Section, Table, Value, number, row, table_of
 from verification.page.source_labels import source_label
-from verification.study.choice.failure_criteria import MODES, Judged, judged
+from verification.study.choice.elastic_limits import beyond_elastic
+from verification.study.choice.failure_criteria import MODES, judged
 from verification.study.choice.thickness_choice import DRAWN, Choice, End, Range, choice
 from verification.study.pages.contour_maps import contour_figures, nearest
 from verification.study.pages.study_assembly import Draw, Written, common_sections, write_page
@@ -45,13 +46,13 @@ def near(curve: Curve, h: float, mode: str) -> dict[str, tuple[float, float]]:
 
 
 def rounded(value: float, uncertainty: float, upwards: bool | None = None) -> str:
-    """A positive ``value`` in at most ``DIGITS`` digits, the last no finer than its ``uncertainty``.
+    """A positive ``value`` in at most ``DIGITS`` digits, none beyond the first of its ``uncertainty``.
 
     upwards : whether it is rounded up or down; to the nearest for None.
     """
     last = math.floor(math.log10(value)) - DIGITS + 1
     if uncertainty > 0 and math.isfinite(uncertainty):
-        last = max(last, math.ceil(math.log10(uncertainty)))
+        last = max(last, math.floor(math.log10(uncertainty)))
     last = min(last, math.floor(math.log10(value)))
     step = 10.0**last
     # 1e-9: a value that is round already stays
@@ -204,39 +205,56 @@ def write_study_report(
     lost = sum(len(c.failures) for c in every)
     points = ("points", f"{solved} solved" + (f", {lost} could not be" if lost else ""))
     summary = " ".join(said) or f"No answer: no curve of {study.title} has two solved points."
-    return write_page(table, study, folder, said, summary, sections, [points], facts)
+    beyond = beyond_elastic(study, columns)
+    return write_page(table, study, folder, said, summary, sections, [points], facts, beyond)
 
 
 def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) -> Section:
     units = study.units
-    curves = [(j, choice([j], study.criteria)) for every in choices for j in every.judgements]
+    # Each choice of the answer, then that of each friction alone.
+    rows = [
+        one
+        for every in choices
+        for one in (
+            every,
+            *(choice([j], study.criteria) for j in every.judgements if len(every.judgements) > 1),
+        )
+    ]
     limited = any(one.judgements[0].limited for one in choices)
-    columns: list[tuple[str, Callable[[tuple[Judged, Choice]], Value]]] = [
-        ("E1/E2", lambda pair: number(pair[0].curve.ratio, "{:.4g}".format)),
-        ("f", lambda pair: number(pair[0].curve.friction, "{:g}".format)),
-        (f"best h [{units.length}]", lambda pair: _best(*pair, units)),
-        ("tolerance", lambda pair: number(pair[1].tolerance, "{:.1%}".format)),
+
+    def lengths(text: str) -> str:
+        return text.replace(f" {units.length}", "")
+
+    def friction(one: Choice) -> Value:
+        f = [j.curve.friction for j in one.judgements]
+        return number(f[0], "{:g}".format) if len(f) == 1 else f"{f[0]:g} to {f[-1]:g}"
+
+    columns: list[tuple[str, Callable[[Choice], Value]]] = [
+        ("E1/E2", lambda one: number(one.judgements[0].curve.ratio, "{:.4g}".format)),
+        ("f", friction),
+        (f"best h [{units.length}]", lambda one: lengths(between(one, one.even, units))),
+        ("tolerance", lambda one: number(one.tolerance, "{:.1%}".format)),
         (
             "stress / strength" if limited else "stress / p_h",
-            lambda pair: Cell(rounded(pair[1].least, pair[1].error), pair[1].least),
+            lambda one: Cell(rounded(one.least, one.error), one.least),
         ),
-        ("governing mode", lambda pair: Cell(_mode(pair[1]), note=MODES[_mode(pair[1])])),
+        ("governing mode", lambda one: Cell(_mode(one), note=MODES[_mode(one)])),
     ]
     if limited:
         columns.append(
             (
                 f"admissible h [{units.length}]",
-                lambda pair: (
-                    "; ".join(between(pair[1], ends, units, safe=True) for ends in pair[1].ranges) or "none"
+                lambda one: (
+                    lengths("; ".join(between(one, ends, units, safe=True) for ends in one.ranges)) or "none"
                 ),
             )
         )
     table = table_of(
-        "The thicknesses of every curve that are equally good: their largest stress exceeds the smallest by "
-        "no more than the tolerance, 1 % or the error of interpolation.",
-        curves,
+        "The thicknesses that are equally good, at all frictions together and at each alone: their largest "
+        "stress exceeds the smallest by no more than the tolerance, 1 % or the error of interpolation.",
+        rows,
         columns,
-        row_css=lambda pair: "" if pair[0].admissible or not pair[0].limited else "disagrees",
+        row_css=lambda one: "" if one.ranges or not one.judgements[0].limited else "disagrees",
     )
     texts = [
         *(said if len(said) > 1 else []),
@@ -249,11 +267,6 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
 
 def _mode(one: Choice) -> str:
     return one.governing(one.best)[1]
-
-
-def _best(j: Judged, one: Choice, units: Units) -> str:
-    ends = [edge if end is None else end.h for end, edge in zip(one.even, one.h[[0, -1]], strict=True)]
-    return " – ".join(rounded(h * j.curve.a_h / units.metre, 0.0) for h in ends)
 
 
 def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
