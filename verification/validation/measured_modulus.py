@@ -10,7 +10,6 @@ would export:
 The data lie in ``data``; ``measurements.toml`` states their sources, stacks, uncertainties and domains.
 """
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -19,6 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from verification.cases.toml_file import load_toml
 from verification.problem.array_types import Array, Coatings
 
 DATA = Path(__file__).parent / "data"
@@ -27,7 +27,7 @@ DATA = Path(__file__).parent / "data"
 @cache
 def described() -> dict[str, Any]:
     """The file ``measurements.toml``."""
-    return tomllib.loads((DATA / "measurements.toml").read_text(encoding="utf-8"))
+    return load_toml((DATA / "measurements.toml").read_bytes())[1]
 
 
 def table(name: str) -> dict[str, Array]:
