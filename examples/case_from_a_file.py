@@ -3,11 +3,10 @@
 import matplotlib.pyplot as plt
 import numpy as np
 
-from verification.cases.case_file import read_case, shipped_cases
-from verification.running.contact_run import run
+import verification
 
-case = read_case(shipped_cases()["05_ratio_4"])
-result = run(case)
+case = verification.read_case("05_ratio_4")
+result = verification.compare(case)
 print(f"{case.title}: {result.outcome}")
 for source in result.sources:
     print(f"  {source.source:18} {source.seconds:5.1f} s {source.failure or ''}")

@@ -1,1 +1,56 @@
-"""Verification harness above the two contact methods."""
+"""Verification of coated point contact: read a case, solve it by any source, compare all of them.
+
+>>> import verification
+>>> case = verification.read_case("05_ratio_4")
+>>> case.title
+'Stiff coating, E1/E2 = 4, h = a_h'
+"""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from verification.cases.case_file import Case
+    from verification.problem.coated_contact import CoatedContact, Solution
+    from verification.running.case_result import CaseResult
+
+__all__ = ["compare", "read_case", "solve"]
+
+
+def read_case(name: str | Path) -> "Case":
+    """A case file, or a shipped case by its name: its problem in SI units, its claims and its numerics.
+
+    Raises ``verification.cases.toml_file.CaseError``, a ValueError, with file and key where it is not valid.
+    """
+    from verification.cases import case_file
+
+    shipped = case_file.default_cases()
+    return case_file.read_case(shipped.get(str(name), Path(name)))
+
+
+def solve(case: "Case | CoatedContact", source: str = "semianalytic", **numerics: Any) -> "Solution":
+    """The solution of a case, or of a ``CoatedContact``, by one source.
+
+    source : "semianalytic", "fem_reference", "integral_equation", or another of ``source_registry.SOURCES``.
+    numerics : keywords of that source beside those of the case, such as ``patches=129``.
+    Returns pressures and stresses in Pa, lengths in m: ``contact_radius``, ``peak_pressure``, ``approach``,
+    ``pressure(x, y)``, ``stress(x, y, z, layer)``, ``displacement(x, y, z)``, ``uncertainty``.
+    Raises ValueError for another source or a problem that the source does not support, and NotConverged.
+    """
+    from verification.problem.coated_contact import CoatedContact
+    from verification.sources.source_registry import solvers
+
+    problem, given = (case, {}) if isinstance(case, CoatedContact) else (case.problem, case.keywords(source))
+    if source not in (known := solvers(problem)):
+        raise ValueError(f"source = {source!r}; this problem is solved by {', '.join(known)}")
+    return known[source](problem, {**given, **numerics})
+
+
+def compare(case: "Case") -> "CaseResult":
+    """A case solved by every source that its claims name, with a verdict on each claim and invariant.
+
+    ``outcome`` is the worst of ``verdicts``; a source that failed has its message in ``sources``.
+    """
+    from verification.running.contact_run import run
+
+    return run(case)
