@@ -22,6 +22,7 @@ API = {
     "verification/study": "Parameter studies",
     "verification/regression": "Baseline",
     "verification/guests": "Codes of others",
+    "verification/validation": "Comparison with measurements",
     "verification/credibility": "Credibility",
     "verification/desk": "Answer to one problem",
 }
@@ -42,10 +43,28 @@ def generated_pages() -> Iterator[tuple[str, str | bytes]]:
     yield from contact_pages()
     yield from published_pages()
     yield from _api()
+    yield from _gallery()
     yield "commands.md", _commands()
     yield "protocol.md", (PACKAGE / "guests" / "PROTOCOL.md").read_text(encoding="utf-8")
     yield "tour.svg", picture()
     yield "problem.svg", (PACKAGE / "report" / "html" / "problem.svg").read_bytes()
+
+
+def _gallery() -> Iterator[tuple[str, str | bytes]]:
+    """The scripts of ``examples/`` in a checkout with their pictures; an installed package has none."""
+    parts = [
+        "# Gallery",
+        "Scripts that run as they are, from `examples/` of the repository, each with its picture.",
+    ]
+    for script in sorted((ROOT / "examples").glob("*.py")):
+        code = script.read_text(encoding="utf-8")
+        title, _, rest = code.removeprefix('"""').partition('"""')
+        picture_name = f"gallery_{script.stem}.png"
+        image = f"```{{image}} {picture_name}\n:alt: {title}\n:width: 80%\n```"
+        parts.append(f"## {script.stem.replace('_', ' ').capitalize()}\n\n{title}\n\n{image}")
+        parts.append(f"```python\n{rest.strip()}\n```")
+        yield picture_name, (script.parent / "pictures" / f"{script.stem}.png").read_bytes()
+    yield "gallery.md", "\n\n".join(parts) + "\n"
 
 
 def _commands() -> str:
