@@ -62,12 +62,12 @@ class NotClaimed(ValueError):
     """A source does not give the field that was requested; this is no failure of it."""
 
 
-def supported(source: Any, points: Points | None, quantity: str) -> Answer:
+def supported(source: Any, points: Points | None, quantity: str, uncertainty: bool = True) -> Answer:
     """The answer of ``source``. Raises NotClaimed where it does not support the quantity."""
-    value, U = source.sample(points, quantity)
-    if value is None:
+    answer = Answer(*source.sample(points, quantity, uncertainty))
+    if answer.value is None:
         raise NotClaimed(f"{type(source).__name__} gives no {quantity}; compare other quantities with it")
-    return Answer(value, U)
+    return answer
 
 
 class Sampled:
@@ -83,31 +83,31 @@ class Sampled:
     @property
     def contact_radius(self) -> float:
         """Contact radius [m]."""
-        return float(self.sample(None, "contact_radius", False).value)
+        return float(supported(self, None, "contact_radius", False).value)
 
     @property
     def approach(self) -> float:
         """Approach [m]."""
-        return float(self.sample(None, "approach", False).value)
+        return float(supported(self, None, "approach", False).value)
 
     @property
     def peak_pressure(self) -> float:
         """Largest pressure [Pa]."""
-        return float(self.sample(None, "peak_pressure", False).value)
+        return float(supported(self, None, "peak_pressure", False).value)
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """Contact pressure [Pa], shape of the points."""
-        return np.asarray(self.sample(Points(x, y), "pressure", False).value)
+        return np.asarray(supported(self, Points(x, y), "pressure", False).value)
 
     def stress(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
     ) -> Array:
         """Stress tensor [Pa], shape (3, 3) + points."""
-        return np.asarray(self.sample(Points(x, y, z, layer, body), "stress", False).value)
+        return np.asarray(supported(self, Points(x, y, z, layer, body), "stress", False).value)
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
         """Displacement [m], shape (3,) + points."""
-        return np.asarray(self.sample(Points(x, y, z, None, body), "displacement", False).value)
+        return np.asarray(supported(self, Points(x, y, z, None, body), "displacement", False).value)
 
 
 def by_functions(of: Any, points: Points | None, quantity: str) -> Any:

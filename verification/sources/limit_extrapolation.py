@@ -103,11 +103,6 @@ class Extrapolated(Sampled):
         """Those of the nearest solution."""
         return self.near.surface_nodes
 
-    @property
-    def singular_radii(self) -> Any:
-        """Those of the nearest solution."""
-        return self.near.singular_radii  # type: ignore[attr-defined]
-
     @cached_property
     def uncertainty(self) -> Uncertainty | None:
         """Uncertainty of the scalars; None where the solutions state none."""
