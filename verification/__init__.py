@@ -9,14 +9,22 @@
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from verification.problem.point_answers import Points
-
 if TYPE_CHECKING:
     from verification.cases.case_file import Case
     from verification.problem.coated_contact import CoatedContact, Solution
+    from verification.problem.point_answers import Points
     from verification.running.case_result import CaseResult
 
 __all__ = ["Points", "compare", "read_case", "solve"]
+
+
+def __getattr__(name: str) -> Any:
+    """``Points``, imported when it is first asked for: the command line starts without NumPy."""
+    if name != "Points":
+        raise AttributeError(f"verification has no {name}; its names are {', '.join(__all__)}")
+    from verification.problem.point_answers import Points
+
+    return Points
 
 
 def read_case(name: str | Path) -> "Case":
