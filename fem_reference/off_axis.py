@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from .axisymmetric import Discretisation
+from .element_answer import ElementAnswer, PlainFields
 from .harmonic_compliance import DENSITY, HarmonicCompliance, harmonic_compliance
 from .line_quadrature import gauss_legendre
 from .location import LocatedPoints, SolidPoints, solid_points
@@ -309,7 +310,7 @@ def _powers(away: np.ndarray, halves: int) -> np.ndarray:
 
 
 @dataclass(frozen=True, eq=False)
-class PressedSolid:
+class PressedSolid(PlainFields):
     """A coated half-space under a given pressure; x along sliding, z into it, tension positive, SI."""
 
     _fine: OffAxisFields
@@ -325,36 +326,27 @@ class PressedSolid:
     def mesh(self) -> MeridianMesh:
         return self._fine.discretisation.mesh
 
-    def pressure(self, x: Any, y: Any = 0.0) -> np.ndarray:
-        """The pressure [Pa]; x, y [m], broadcast."""
-        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+    def sample(self, points: Any, quantity: str, uncertainty: bool = True) -> ElementAnswer:
+        """Value of a quantity at points, with its uncertainty when it was estimated.
+
+        points : any record with the attributes of ``ElementPoints``, of the flat
+        quantity : pressure, which is given; stress or displacement, uncertain by the change from a coarser
+            mesh and by the last harmonics'
+        uncertainty : False leaves it out
+        """
+        if quantity == "pressure":
+            p = self._given(points)
+            return ElementAnswer(p, np.zeros(p.shape) if uncertainty else None)
+        if quantity not in ("stress", "displacement"):
+            return ElementAnswer(None)
+        if points.body != "flat":
+            raise ValueError(f"body = {points.body!r}; this contact has flat")
+        return self._sums(points, quantity, uncertainty and self._coarse is not None)
+
+    def _given(self, points: Any) -> np.ndarray:
+        x, y = np.broadcast_arrays(np.asarray(points.x, dtype=float), np.asarray(points.y, dtype=float))
         unit = self._units
         return np.asarray(self._fine.pressure(x / unit.length, y / unit.length)) * unit.pressure
-
-    def displacement(self, x: Any, y: Any, z: Any) -> np.ndarray:
-        """Displacement (u_x, u_y, u_z) [m], shape (3,) + points; x, y, z [m], broadcast."""
-        return self.displacement_with_uncertainty(x, y, z, uncertainty=False)[0]
-
-    def displacement_with_uncertainty(
-        self, x: Any, y: Any, z: Any, uncertainty: bool = True
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Displacement and its uncertainty [m]: the change from a coarser mesh, and the last harmonics'.
-
-        Raises ValueError where no uncertainty was estimated.
-        """
-        (u, U), shape = self._sums(x, y, z, None, uncertainty, 0)
-        return tuple(v.reshape(3, *shape) * self._units.displacement for v in (u, U))  # type: ignore[return-value]
-
-    def stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
-        """Stress tensor [Pa], shape (3, 3) + points; ``layer`` as in ``Solution.stress``."""
-        return self.stress_with_uncertainty(x, y, z, layer, uncertainty=False)[0]
-
-    def stress_with_uncertainty(
-        self, x: Any, y: Any, z: Any, layer: int | None = None, uncertainty: bool = True
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Stress and its uncertainty [Pa], as ``displacement_with_uncertainty``."""
-        (s, U), shape = self._sums(x, y, z, layer, uncertainty, 1)
-        return tuple(v.reshape(3, 3, *shape) * self._units.pressure for v in (s, U))  # type: ignore[return-value]
 
     def gap(
         self, x: Any, y: Any, height: Callable[[Any, Any], Any], approach: float | None = None
@@ -374,27 +366,29 @@ class PressedSolid:
         lifted = float((weight * height(x, y)).sum() / weight.sum())
         return lifted + self._fine.work / self._fine.load * self._units.displacement
 
-    def _matching(self, x: Any, y: Any) -> tuple[Any, Any]:
+    def _matching(self, points: Any) -> tuple[Any, Any]:
         """Points [m] of the companion that are compared with x, y."""
-        return x, y
+        return points.x, points.y
 
-    def _sums(
-        self, x: Any, y: Any, z: Any, layer: int | None, uncertainty: bool, which: int
-    ) -> tuple[tuple[np.ndarray, np.ndarray], tuple[int, ...]]:
-        """Displacement (which = 0) or stress (1), Cartesian, (3 or 9, n), with its uncertainty; scaled."""
-        if uncertainty and self._coarse is None:
-            raise ValueError("this solution has no uncertainty; solve with estimate_uncertainty=True")
+    def _sums(self, points: Any, quantity: str, stated: bool) -> ElementAnswer:
+        """Stress or displacement, Cartesian, with the largest uncertainty of its components for each."""
+        if quantity == "displacement":
+            which, turn, unit = 0, cartesian, self._units.displacement
+        else:
+            which, turn, unit = 1, tensor, self._units.pressure  # type: ignore[assignment]
+        ahead = (3,) * (1 + which)
         values = []
-        for fields in (self._fine, self._coarse) if uncertainty else (self._fine,):
+        for fields in (self._fine, self._coarse) if stated else (self._fine,):
             assert fields is not None
-            at = (x, y) if fields is self._fine else self._matching(x, y)
-            points = solid_points(fields.discretisation.locator, self._units.length, *at, z, layer)
-            found = fields(points)
-            turn = tensor if which else cartesian
-            values.append([turn(found[k], points.cos, points.sin) for k in (which, 2 + which)])
-        value, late = (one.reshape(9 if which else 3, -1) for one in values[0])
-        if not uncertainty:
-            return (value, np.zeros_like(value)), points.shape
-        change = np.abs(value - values[1][0].reshape(value.shape)).max(axis=0)
-        spread = BEYOND[which] * np.abs(late).max(axis=0)
-        return (value, np.broadcast_to(change + spread, value.shape)), points.shape
+            at = (points.x, points.y) if fields is self._fine else self._matching(points)
+            locator = fields.discretisation.locator
+            places = solid_points(locator, self._units.length, *at, points.z, points.layer)
+            found, shape = fields(places), (*ahead, *places.shape)
+            values.append([turn(found[k], places.cos, places.sin).reshape(shape) for k in (which, 2 + which)])
+        value, late = values[0]
+        if not stated:
+            return ElementAnswer(value * unit)
+        axes = tuple(range(len(ahead)))
+        change = np.abs(value - values[1][0]).max(axis=axes)
+        spread = change + BEYOND[which] * np.abs(late).max(axis=axes)
+        return ElementAnswer(value * unit, np.broadcast_to(spread, value.shape) * unit)

@@ -7,11 +7,12 @@ corrections do not reach is the other method's, and what that leaves of the gap 
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
 
 import numpy as np
 
+from .element_answer import ElementAnswer, ElementPoints
 from .estimate import Uncertainty
 from .harmonic_compliance import DENSITY, harmonic_compliance
 from .indenter_height import Height, Indenter, indenter_height
@@ -78,26 +79,41 @@ class ShapedContact(PressedSolid):
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
     typical: float = 0.0
-    stiffness: float | None = None
-    stiffness_uncertainty: float | None = None
-    relative: bool = False
+    frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
 
-    @property
-    def relative_to_edge(self) -> "ShapedContact":
-        """The same for points meant as shares of the way to the edge, of which no edge is uncertain."""
-        return replace(self, relative=True)
+    def sample(self, points: Any, quantity: str, uncertainty: bool = True) -> ElementAnswer:
+        """Value of a quantity at points, with its uncertainty when it was estimated.
 
-    def stress_with_uncertainty(
-        self, x: Any, y: Any, z: Any, layer: int | None = None, uncertainty: bool = True
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """As of ``PressedSolid``, with the error of the pressure."""
-        s, U = super().stress_with_uncertainty(x, y, z, layer, uncertainty)
-        if not uncertainty:
-            return s, U
-        smeared = np.where(np.asarray(z) == 0, self._smeared(x, y), 0.0)
+        Arguments as of ``PressedSolid.sample``; a scalar is contact_radius, approach, peak_pressure, extent_x
+        or extent_y. The stress has the error of the pressure too, the displacement that of the approach.
+        """
+        stated = uncertainty and self.uncertainty is not None and self._coarse is not None
+        scalars = ("contact_radius", "approach", "peak_pressure", "extent_x", "extent_y")
+        if quantity in scalars:
+            return ElementAnswer(
+                getattr(self, quantity), self._errors[scalars.index(quantity)] if stated else None
+            )
+        if quantity == "pressure":
+            return self._pressure(points, stated)
+        value, U = super().sample(points, quantity, stated)
+        if not stated or U is None:
+            return ElementAnswer(value)
+        if quantity == "displacement":
+            return ElementAnswer(value, U + self._errors[1])
+        x, y = points.x, points.y
+        smeared = np.where(np.asarray(points.z) == 0, self._smeared(x, y), 0.0)
         distance = np.hypot(x, y) / (AXIS[1] * self._units.length)
         safety = SAFETY * (1 + (AXIS[0] - 1) * np.maximum(1 - distance, 0))
-        return s, np.maximum(safety * U, SAFETY * self.typical) + self._floor + smeared
+        floor = self._errors[2] + smeared
+        return ElementAnswer(value, np.maximum(safety * U, SAFETY * self.typical) + floor)
+
+    @property
+    def _errors(self) -> tuple[float, ...]:
+        """Uncertainties of contact radius, approach, peak pressure and both extents."""
+        one, extents = self.uncertainty, self.extent_uncertainty
+        assert one is not None
+        assert extents is not None
+        return (one.contact_radius, one.approach, one.peak_pressure, *extents)
 
     def _smeared(self, x: Any, y: Any) -> np.ndarray:
         """What the elements may smear of the stress on the surface [Pa], where the pressure has its root.
@@ -126,41 +142,24 @@ class ShapedContact(PressedSolid):
                 missed.append(np.abs((4 * near - far) / 6 - p / 2))
         return np.where(on_series, 0.0, (1 - 2 * nu) / (1 - nu) * np.max(missed, axis=0))
 
-    def stress_uncertainty(self, x: Any, y: Any, z: Any, layer: int | None = None) -> np.ndarray:
-        """The second part of ``stress_with_uncertainty``."""
-        return self.stress_with_uncertainty(x, y, z, layer)[1]
-
-    def displacement_with_uncertainty(
-        self, x: Any, y: Any, z: Any, uncertainty: bool = True
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """As of ``PressedSolid``, with that of the approach."""
-        u, U = super().displacement_with_uncertainty(x, y, z, uncertainty)
-        return u, U + self.uncertainty.approach if uncertainty and self.uncertainty else U
-
-    def displacement_uncertainty(self, x: Any, y: Any, z: Any) -> np.ndarray:
-        """The second part of ``displacement_with_uncertainty``."""
-        return self.displacement_with_uncertainty(x, y, z)[1]
-
-    def pressure_uncertainty(self, x: Any, y: Any = 0.0) -> np.ndarray:
-        """Uncertainty of the pressure [Pa]: the change from the companion, and that of the peak."""
-        if self._coarse is None:
-            raise ValueError("this solution has no uncertainty; solve with estimate_uncertainty=True")
-        at = (v / self._units.length for v in self._matching(x, y))
+    def _pressure(self, points: Any, stated: bool) -> ElementAnswer:
+        """Pressure [Pa], uncertain by the change from the companion and that of the peak."""
+        p = self._given(points)
+        if not stated or self._coarse is None:
+            return ElementAnswer(p)
+        at = (v / self._units.length for v in self._matching(points))
         other = np.asarray(self._coarse.pressure(*at)) * self._units.pressure
-        return SAFETY * np.abs(self.pressure(x, y) - other) + self._floor
+        return ElementAnswer(p, SAFETY * np.abs(p - other) + self._errors[2])
 
-    def _matching(self, x: Any, y: Any) -> tuple[Any, Any]:
-        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        if not self.relative:
+    def _matching(self, points: Any) -> tuple[Any, Any]:
+        x, y = np.broadcast_arrays(np.asarray(points.x, dtype=float), np.asarray(points.y, dtype=float))
+        at_edge = np.asarray(points.frame) == "edge"
+        if not at_edge.any():
             return x, y
         pair, L = [one.pressure for one in (self._fine, self._coarse) if one], self._units.length
         fine, other = (one for one in pair if isinstance(one, StarPressure))
         X, Y = fine.matching(other, x / L, y / L)
-        return L * X, L * Y
-
-    @property
-    def _floor(self) -> float:
-        return self.uncertainty.peak_pressure if self.uncertainty else 0.0
+        return np.where(at_edge, L * X, x), np.where(at_edge, L * Y, y)
 
 
 def solve_shape(
@@ -297,7 +296,7 @@ def _typical(solid: PressedSolid) -> float:
         np.pi * (np.arange(turns) + 0.3) / turns,
         reach * (0.1 + np.arange(depths) / depths),
     )
-    _, U = solid.stress_with_uncertainty(r * np.cos(theta), r * np.sin(theta), z)
+    _, U = solid.sample(ElementPoints(r * np.cos(theta), r * np.sin(theta), z), "stress")
     return float(np.percentile(U[0, 0], TYPICAL))
 
 

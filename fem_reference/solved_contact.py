@@ -2,10 +2,11 @@
 
 import time
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
+from .element_answer import ElementAnswer, PlainFields
 from .estimate import Estimates, Uncertainty
 from .location import SolidPoints, solid_points
 from .scaling import Units
@@ -40,7 +41,7 @@ class Diagnostics:
 
 
 @dataclass(frozen=True, eq=False)
-class Solution:
+class Solution(PlainFields):
     """Contact of a sphere (or a prescribed pressure) on a coated half-space.
 
     Origin at first contact, x along sliding, z into the body in question; tension positive; SI units.
@@ -68,6 +69,7 @@ class Solution:
     stiffness: float | None = None
     stiffness_uncertainty: float | None = None
     singular_radii: tuple[float, ...] = ()
+    frames: ClassVar = ("fixed",)  # in which uncertainties are estimated
 
     def with_friction(self, friction: float) -> "Solution":
         """The same contact, sliding with another coefficient ``friction`` of q = f p, or at rest with 0.
@@ -113,98 +115,78 @@ class Solution:
             stiffness_uncertainty=None,
         )
 
-    def pressure(self, x: Any, y: Any = 0.0) -> np.ndarray:
-        """Contact pressure [Pa] at the surface points (x, y), broadcast; zero outside the contact."""
-        return self._regular(self.state.pressure(self._radius(x, y)) * self.units.pressure, x, y, 0.0)
+    def sample(self, points: Any, quantity: str, uncertainty: bool = True) -> ElementAnswer:
+        """Value of a quantity at points, with its uncertainty when it was estimated.
 
-    def pressure_uncertainty(self, x: Any, y: Any = 0.0) -> np.ndarray:
-        """Absolute numerical uncertainty of ``pressure`` [Pa], same shape.
-
-        Raises ValueError when the solution was solved without an estimate.
-        """
-        U = self._estimated("flat").pressure(self._radius(x, y)) * self.units.pressure
-        return self._regular(U, x, y, 0.0)
-
-    def stress(self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat") -> np.ndarray:
-        """Stress tensor sigma[i, j, ...] [Pa] in x, y, z; shape (3, 3) + broadcast shape of the points.
-
-        layer : 0 at the surface to the number of coatings in the substrate; selects the side of an interface,
-            None the upper one
-        body : "flat" or "ball"
+        points : any record with the attributes of ``ElementPoints``; None of a scalar
+        quantity : pressure, stress or displacement, or a scalar: contact_radius, approach, peak_pressure,
+            stiffness
+        uncertainty : False leaves it out
         Raises ValueError for a point outside the solid or outside its ``layer``, and for a rigid ball.
         """
-        return self._regular(self._stress(self._points(x, y, z, layer, body), body), x, y, z)
+        stated = uncertainty and bool(self.estimates)
+        if quantity == "pressure":
+            return self._regular(self._pressure(points, stated), points.x, points.y, 0.0)
+        if quantity in ("stress", "displacement"):
+            number = self._number(points.body)
+            locator = self.states[number].discretisation.locator
+            at = solid_points(locator, self.units.length, points.x, points.y, points.z, points.layer)
+            if quantity == "displacement":
+                return self._displacement(at, number, stated)
+            return self._regular(self._stress(at, number, stated), points.x, points.y, points.z)
+        if quantity == "stiffness":
+            return ElementAnswer(self.stiffness, self.stiffness_uncertainty if stated else None)
+        if quantity in ("contact_radius", "approach", "peak_pressure"):
+            return ElementAnswer(
+                getattr(self, quantity), getattr(self.uncertainty, quantity) if stated else None
+            )
+        return ElementAnswer(None)
 
-    def stress_with_uncertainty(
-        self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat"
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """``stress`` and the absolute numerical uncertainty of each of its components [Pa], same shape.
+    def _pressure(self, points: Any, stated: bool) -> ElementAnswer:
+        r = np.hypot(np.asarray(points.x, dtype=float), np.asarray(points.y, dtype=float)) / self.units.length
+        p = self.state.pressure(r) * self.units.pressure
+        return ElementAnswer(p, self.estimates[0].pressure(r) * self.units.pressure if stated else None)
 
-        Raises ValueError like ``stress``, and when the solution was solved without an estimate.
-        """
-        estimates, points = self._estimated(body), self._points(x, y, z, layer, body)
-        cos, sin = np.abs(points.cos), np.abs(points.sin)
+    def _stress(self, points: SolidPoints, number: int, stated: bool) -> ElementAnswer:
+        _, sigma = self.states[number](points)
+        shape, unit = (3, 3, *points.shape), self.units.pressure
+        value = tensor(sigma * unit, points.cos, points.sin).reshape(shape)
+        if not stated:
+            return ElementAnswer(value)
+        estimates, cos, sin = self.estimates[number], np.abs(points.cos), np.abs(points.sin)
         error = estimates.normal(points.located)
         if estimates.tangential is not None:
             error = error + estimates.tangential(points.located) * np.stack([cos] * 4 + [sin] * 2)
         # absolute values of all products in the rotation add up
-        U = tensor(error * self.units.pressure, cos, sin, sign=1.0).reshape(3, 3, *points.shape)
-        return self._regular(self._stress(points, body), x, y, z), self._regular(U, x, y, z)
+        return ElementAnswer(value, tensor(error * unit, cos, sin, sign=1.0).reshape(shape))
 
-    def stress_uncertainty(
-        self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = "flat"
-    ) -> np.ndarray:
-        """The second part of ``stress_with_uncertainty`` alone."""
-        return self.stress_with_uncertainty(x, y, z, layer, body)[1]
-
-    def displacement(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
-        """Displacement (u_x, u_y, u_z) [m], u_z into the body; shape (3,) + that of the points."""
-        points = self._points(x, y, z, None, body)
-        u, _ = self.states[self._number(body)](points)
-        return cartesian(u, points.cos, points.sin).reshape(3, *points.shape) * self.units.displacement
-
-    def displacement_uncertainty(self, x: Any, y: Any, z: Any, body: str = "flat") -> np.ndarray:
-        """Absolute numerical uncertainty of each component of ``displacement`` [m], same shape.
-
-        Raises ValueError when the solution was solved without an estimate.
-        """
-        estimates, points = self._estimated(body), self._points(x, y, z, None, body)
-        cos, sin = np.abs(points.cos), np.abs(points.sin)
+    def _displacement(self, points: SolidPoints, number: int, stated: bool) -> ElementAnswer:
+        u, _ = self.states[number](points)
+        shape, unit = (3, *points.shape), self.units.displacement
+        value = cartesian(u, points.cos, points.sin).reshape(shape) * unit
+        if not stated:
+            return ElementAnswer(value)
+        estimates, cos, sin = self.estimates[number], np.abs(points.cos), np.abs(points.sin)
         error = estimates.normal.displacement(points.located)
         if estimates.tangential is not None:
             error = error + estimates.tangential.displacement(points.located) * np.stack([cos, sin, cos])
         U = np.stack([error[0] * cos + error[1] * sin, error[0] * sin + error[1] * cos, error[2]])
-        return U.reshape(3, *points.shape) * self.units.displacement
+        return ElementAnswer(value, U.reshape(shape) * unit)
 
-    def _regular(self, value: np.ndarray, x: Any, y: Any, z: Any) -> np.ndarray:
-        """``value``, or NaN at points closer to ``singular_radii`` than can be told apart from them."""
+    def _regular(self, answer: ElementAnswer, x: Any, y: Any, z: Any) -> ElementAnswer:
+        """``answer``, or NaN at points closer to ``singular_radii`` than can be told apart from them."""
         if not self.singular_radii:
-            return value
+            return answer
         r, z = np.broadcast_arrays(np.hypot(x, y), np.asarray(z, dtype=float))
         away = np.min([np.hypot(r - one, z) for one in self.singular_radii], axis=0)
-        return np.where(away <= AT_SINGULAR * self.contact_radius, np.nan, value)
+        at = away <= AT_SINGULAR * self.contact_radius
+        return ElementAnswer(*(None if part is None else np.where(at, np.nan, part) for part in answer))
 
     def _number(self, body: str) -> int:
         known = ("flat", "ball")[: len(self.states)]
         if body not in known:
             raise ValueError(f"body = {body!r}; this contact has {' and '.join(known)}")
         return known.index(body)
-
-    def _estimated(self, body: str) -> Estimates:
-        if not self.estimates:
-            raise ValueError("this solution has no uncertainty; solve with estimate_uncertainty=True")
-        return self.estimates[self._number(body)]
-
-    def _radius(self, x: Any, y: Any) -> np.ndarray:
-        return np.hypot(np.asarray(x, dtype=float), np.asarray(y, dtype=float)) / self.units.length
-
-    def _points(self, x: Any, y: Any, z: Any, layer: int | None, body: str) -> SolidPoints:
-        locator = self.states[self._number(body)].discretisation.locator
-        return solid_points(locator, self.units.length, x, y, z, layer)
-
-    def _stress(self, points: SolidPoints, body: str) -> np.ndarray:
-        _, sigma = self.states[self._number(body)](points)
-        return tensor(sigma * self.units.pressure, points.cos, points.sin).reshape(3, 3, *points.shape)
 
 
 def cartesian(u: np.ndarray, cos: np.ndarray, sin: np.ndarray) -> np.ndarray:

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,9 +20,11 @@ from semianalytic import fields
 from semianalytic.inputs import Body, check_finite
 from semianalytic.level import Level, interpolated
 from semianalytic.neighbours import Neighbours
+from semianalytic.patch_answer import PatchAnswer, PatchPoints
 from semianalytic.uncertainty import AT_EDGE, SMOOTH, Uncertainty, safety, unsettled
 
 Array = NDArray[np.floating]
+BoolArray = NDArray[np.bool_]
 
 # error of the stress below patches, over the peak pressure, against Hankel quadrature: above 4 patches, below
 EVALUATION = (5e-6, 5e-7)
@@ -97,7 +100,7 @@ class Solution:
     _level: Level = field(repr=False)
     _body: Body = field(repr=False)
     neighbours: Neighbours | None = field(default=None, repr=False)
-    relative: bool = False
+    frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
     singular_radii: tuple[float, ...] = ()
 
     @classmethod
@@ -152,18 +155,24 @@ class Solution:
         """d load / d approach [N/m], from contacts solved on first use; None for patches alone."""
         return None if self.neighbours is None else self.neighbours.stiffness[0]
 
-    @property
-    def stiffness_uncertainty(self) -> float | None:
-        """Uncertainty of ``stiffness`` [N/m]; None where none was estimated."""
-        return None if self.neighbours is None else self.neighbours.stiffness[1]
+    def sample(self, points: Any, quantity: str, uncertainty: bool = True) -> PatchAnswer:
+        """Value of a quantity at points, with its uncertainty where one was estimated.
 
-    @property
-    def relative_to_edge(self) -> "Solution":
-        """The same for points meant as x/a: uncertainties of fields leave out that of the contact radius.
-
-        At a fixed x next to the edge that is all of them: p changes by q sqrt(2 da/a).
+        points : any record with the attributes of ``PatchPoints``; None of a scalar.
+        quantity : pressure, stress or displacement, or a scalar: contact_radius, approach, peak_pressure,
+        stiffness.   uncertainty : False leaves it out, and the work for it.
+        Raises ValueError for z < 0, for a layer that z does not lie in, and for a rigid ball.
         """
-        return replace(self, relative=True)
+        stated = self.uncertainty if uncertainty else None
+        fields = {"pressure": self._pressure, "stress": self._stress, "displacement": self._displacement}
+        if quantity in fields:
+            return fields[quantity](points, stated is not None)
+        if quantity == "stiffness" and self.neighbours is not None:
+            value, U = self.neighbours.stiffness
+            return PatchAnswer(value, U if uncertainty else None)
+        if quantity in ("contact_radius", "approach", "peak_pressure"):
+            return PatchAnswer(getattr(self, quantity), stated and getattr(stated, quantity))
+        return PatchAnswer(None)
 
     def with_friction(self, friction: float) -> "Solution":
         """The same contact and pressure, sliding with another finite coefficient; ValueError otherwise."""
@@ -172,22 +181,18 @@ class Solution:
         return replace(self, coarser=coarser, _body=self._body.with_friction(float(friction)))
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """Contact pressure [Pa], 0 outside; x, y : [m], broadcast.
-
-        With a smooth edge that of its shape, fitted to the patches; of patches alone p^2 is interpolated.
-        """
-        return self._level.pressure(x, y)
+        """Contact pressure [Pa], 0 outside; x, y : [m], broadcast."""
+        return np.asarray(self.sample(PatchPoints(x, y), "pressure", False).value)
 
     def stress(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
     ) -> Array:
-        """Stress tensor [Pa], shape (3, 3) + points.
+        """Stress tensor [Pa], shape (3, 3) + points; arguments and errors as of ``PatchPoints``."""
+        return np.asarray(self.sample(PatchPoints(x, y, z, layer, body), "stress", False).value)
 
-        x, y, z : [m], broadcast, z >= 0.  layer : 0 is the first coating, len(coatings) the substrate; it
-        picks the side of an interface, None the upper one.  body : "flat" or "ball".
-        Raises ValueError for z < 0, for a layer that z does not lie in, and for a rigid ball.
-        """
-        return fields.stress([self._level], self._body.named(body), x, y, z, layer)[0]
+    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat") -> Array:
+        """Displacement [m], shape (3,) + points, u_z into the body; arguments as of ``PatchPoints``."""
+        return np.asarray(self.sample(PatchPoints(x, y, z, None, body), "displacement", False).value)
 
     def stress_plane(self, z: float, layer: int | None = None, body: str = "flat") -> Array:
         """Stress tensor [Pa] below every patch centre at one depth, shape (3, 3, n, n), by seven FFTs.
@@ -203,50 +208,45 @@ class Solution:
         """
         return fields.displacement_plane(self._level, self._body.named(body), z)
 
-    def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat") -> Array:
-        """Displacement [m], shape (3,) + points, u_z into the body.
-
-        x, y, z : [m], broadcast, z >= 0.  body : as in ``stress``.
-        """
-        return fields.displacement([self._level], self._body.named(body), x, y, z)[0]
-
-    def displacement_with_uncertainty(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat"
-    ) -> tuple[Array, Array]:
-        """Displacement and its uncertainty [m], shape (3,) + points each.
-
-        From coarser companions, shared as that of the stress, with that of the approach.
-        Raises ValueError where no uncertainty was estimated.
-        """
-        stated = self._stated
-        u, second, third = fields.displacement(self._levels, self._body.named(body), x, y, z)
+    def _displacement(self, points: Any, stated: bool) -> PatchAnswer:
+        """Displacement [m]; uncertain by its coarser companions, shared as that of the stress, and by the
+        approach."""
+        x, y, z, body = points.x, points.y, points.z, self._body.named(points.body)
+        levels = self._levels if stated else [self._level]
+        u, *coarser = fields.displacement(levels, body, x, y, z)
+        if not stated:
+            return PatchAnswer(u)
+        second, third = coarser
         own = self._change(np.abs(u - second), np.abs(second - third), x, y)
         own[2] = total = own.max(axis=0)  # u_z moves with the approach
         share = self._share(own, total, OWN)
-        total = total + (stated.approach if self._level.smooth() is None else RINGS * self.approach)
+        approach = self._stated.approach
+        total = total + (approach if self._level.smooth() is None else RINGS * self.approach)
         if self._level.shape is not None:
-            total += stated.approach + DEFLECTED * self._floor / self.peak_pressure * self.approach
-        return u, share * total
+            total += approach + DEFLECTED * self._floor / self.peak_pressure * self.approach
+        return PatchAnswer(u, share * total)
 
-    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = "flat") -> Array:
-        """The second part of ``displacement_with_uncertainty``."""
-        return self.displacement_with_uncertainty(x, y, z, body)[1]
+    def _pressure(self, points: Any, stated: bool) -> PatchAnswer:
+        """Contact pressure [Pa]: with a smooth edge that of its shape, fitted to the patches; of patches
+        alone p^2 is interpolated. A given one has no uncertainty.
 
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """Uncertainty of the pressure [Pa] from the coarser companions; 0 of a given pressure.
-
-        With a smooth edge as that of the stress. Of patches alone the largest difference from the companion
-        within two of its patches, times ``safety``, or a sixth of that of the next two; plus the changes of
-        the peak by the other numerical parameters, twice, since they were varied on half the patches and the
-        pressure due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak; twice the sum.
-        Raises ValueError where no uncertainty was estimated.
+        With a smooth edge uncertain as the stress. Of patches alone by the largest difference from the
+        companion within two of its patches, times ``safety``, or a sixth of that of the next two; plus the
+        changes of the peak by the other numerical parameters, twice, since they were varied on half the
+        patches and the pressure due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak;
+        twice the sum.
         """
+        x, y = points.x, points.y
+        p = self._level.pressure(x, y)
+        if not stated:
+            return PatchAnswer(p)
         if self._level.given is not None:
-            return 0 * self.pressure(x, y)
-        least = (2 * self._other_than("patch size") + RESOLUTION) * self.peak_pressure
+            return PatchAnswer(p, 0 * p)
         if self._level.shape is not None:
-            return self._smooth_uncertainty(x, y)
-        return 2 * (interpolated(self.nodes, self._refinement, x, y, order=1) + least) + self._rim(x, y, 0.0)
+            return PatchAnswer(p, self._smooth_uncertainty(x, y, at_edge(points)))
+        least = (2 * self._other_than("patch size") + RESOLUTION) * self.peak_pressure
+        changed = interpolated(self.nodes, self._refinement, x, y, order=1)
+        return PatchAnswer(p, 2 * (changed + least) + self._rim(x, y, 0.0))
 
     @cached_property
     def _refinement(self) -> Array:
@@ -265,7 +265,7 @@ class Solution:
         away, x, y = (np.maximum(inside, outside) - 1.0)[1:-1, 1:-1], np.clip(x, *ends), np.clip(y, *ends)
         return highest * d / (d + np.hypot(interpolated(self.nodes, away, x, y, order=1) * d, z))
 
-    def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike) -> Array:
+    def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike, at_edge: BoolArray) -> Array:
         """Uncertainty of the pressure [Pa] of a smooth edge: of its shape at equal x/a, and of its radius."""
         fine = self._level.shape
         assert fine is not None
@@ -274,11 +274,11 @@ class Solution:
         total = self._change(np.abs(p - second), np.abs(second - third), x, y) + self._floor
         total = total + self._near_ripple(x, y) + self._other_than("patch size") * self.peak_pressure
         total = np.maximum(total, self._misfit(x, y, 0.0))
-        if self.relative:
+        if at_edge.all():
             return total
         shift = self._uncertain_reach
         moved = [np.abs(fine.widened(s).pressure(x, y) - p) for s in (-shift, shift)]
-        return np.maximum(total, np.max(moved, axis=0))
+        return np.where(at_edge, total, np.maximum(total, np.max(moved, axis=0)))
 
     @cached_property
     def _levels(self) -> list[Level]:
@@ -293,26 +293,20 @@ class Solution:
         """Patches a side over those of the coarser companion."""
         return self._level.grid.n / self._levels[1].grid.n
 
-    def stress_uncertainty(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
-    ) -> Array:
-        """The second part of ``stress_with_uncertainty``."""
-        return self.stress_with_uncertainty(x, y, z, layer, body)[1]
-
-    def stress_with_uncertainty(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = "flat"
-    ) -> tuple[Array, Array]:
-        """Stress and its uncertainty [Pa], shape (3, 3) + points each, the latter from coarser companions.
+    def _stress(self, points: Any, stated: bool) -> PatchAnswer:
+        """Stress [Pa], uncertain by its coarser companions.
 
         The largest difference over the six components of this level and the next, or of the next and the one
         after, at the same x/a of each. Under a smooth edge times ``INSIDE`` to ``AT_EDGE``, plus ``FLOOR`` of
-        the peak; or the change by the uncertain radius, where that is larger, unless the solution is
-        ``relative_to_edge``; of that, a component has its share (``OWN``, ``SHEAR``). Of patches alone times
-        ``safety``, or a third, plus ``EVALUATION``. Both with the changes by the other numerical parameters.
-        Raises ValueError where no uncertainty was estimated.
+        the peak; or the change by the uncertain radius, where that is larger, but for the frame "edge"; of
+        that, a component has its share (``OWN``, ``SHEAR``). Of patches alone times ``safety``, or a third,
+        plus ``EVALUATION``. Both with the changes by the other numerical parameters.
         """
-        stated, floor, solid = self._stated, self._other_than("patch size"), self._body.named(body)
-        sigma, second, third = fields.stress(self._levels, solid, x, y, z, layer)
+        x, y, z, layer, solid = points.x, points.y, points.z, points.layer, self._body.named(points.body)
+        sigma, *coarser = fields.stress(self._levels if stated else [self._level], solid, x, y, z, layer)
+        if not stated:
+            return PatchAnswer(sigma)
+        (second, third), floor = coarser, self._other_than("patch size")
         own = self._change(np.abs(sigma - second), np.abs(second - third), x, y)
         total = own.max(axis=(0, 1))
         own[0, 0] = own[1, 1] = np.maximum(own[0, 0], own[1, 1])
@@ -325,18 +319,19 @@ class Solution:
                 deep = np.minimum(np.asarray(z) / (DEEP[1] * self.diagnostics.patch_size), 1.0)
                 # other coefficients change all pressures together, which is felt far below the contact too
                 other = self._other_than("patch size", "iteration")
-                scale = other + DEEP[0] * deep * stated.contact_radius / self.contact_radius
+                scale = other + DEEP[0] * deep * self._stated.contact_radius / self.contact_radius
                 total = total + least * shallow + np.abs(sigma).max(axis=(0, 1)) * scale
                 total = np.maximum(total, self._misfit(x, y, z))
-                if not self.relative:
-                    total = np.maximum(total, self._uncertain_edge(solid, x, y, z, layer))
+                if not (moves := at_edge(points)).all():
+                    moved = self._uncertain_edge(solid, x, y, z, layer)
+                    total = np.where(moves, total, np.maximum(total, moved))
                 total = total * (1 - MEAN * deep)
             total = total + RINGS * self.peak_pressure
         else:
             total += floor * self.peak_pressure + self._rim(x, y, z)
             deep = np.asarray(z) >= 4 * self.diagnostics.patch_size
             total += np.where(deep, *EVALUATION[::-1]) * self.peak_pressure
-        return sigma, share * total
+        return PatchAnswer(sigma, share * total)
 
     def _share(self, own: Array, largest: Array, of: tuple[float, float]) -> Array:
         """Share of each component in the uncertainty, by its ``own`` `_change` and the ``largest`` of all."""
@@ -446,3 +441,8 @@ class Solution:
         rows = self._stated.budget
         other = sum(row[2] for row in rows if row[0] == "peak_pressure" and row[1] not in parameters)
         return other / self.peak_pressure
+
+
+def at_edge(points: Any) -> BoolArray:
+    """Which of the points keep their share of the way to the contact edge."""
+    return np.asarray(np.asarray(points.frame) == "edge")

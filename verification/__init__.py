@@ -12,9 +12,19 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from verification.cases.case_file import Case
     from verification.problem.coated_contact import CoatedContact, Solution
+    from verification.problem.point_answers import Points
     from verification.running.case_result import CaseResult
 
-__all__ = ["compare", "read_case", "solve"]
+__all__ = ["Points", "compare", "read_case", "solve"]
+
+
+def __getattr__(name: str) -> Any:
+    """``Points``, imported when it is first asked for: the command line starts without NumPy."""
+    if name != "Points":
+        raise AttributeError(f"verification has no {name}; its names are {', '.join(__all__)}")
+    from verification.problem.point_answers import Points
+
+    return Points
 
 
 def read_case(name: str | Path) -> "Case":
@@ -34,7 +44,8 @@ def solve(case: "Case | CoatedContact", source: str = "semianalytic", **numerics
     source : "semianalytic", "fem_reference", "integral_equation", or another of ``source_registry.SOURCES``.
     numerics : keywords of that source beside those of the case, such as ``patches=129``.
     Returns pressures and stresses in Pa, lengths in m: ``contact_radius``, ``peak_pressure``, ``approach``,
-    ``pressure(x, y)``, ``stress(x, y, z, layer)``, ``displacement(x, y, z)``, ``uncertainty``.
+    ``pressure(x, y)``, ``stress(x, y, z, layer)``, ``displacement(x, y, z)``; with the uncertainty of each
+    ``sample(Points(x, y, z, layer), "stress")``.
     Raises ValueError for another source or a problem that the source does not support, and NotConverged.
     """
     from verification.problem.coated_contact import CoatedContact

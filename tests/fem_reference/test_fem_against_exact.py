@@ -11,6 +11,7 @@ import pytest
 
 from fem_reference import solve
 from fem_reference.contact_solver import QUALITY
+from verification.problem.point_answers import Points
 from verification.sources.references import integral_equation
 
 R, W, E = 10e-3, 20.0, 210e9
@@ -72,7 +73,7 @@ def test_default_numerics_meet_the_figures_asked(ratio, thickness, nu):
     for name, (x, z, layer, tolerance) in lines(exact.contact_radius, a_h, thickness * a_h).items():
         error = np.abs(s.stress(x, 0.0, z, layer) - exact.stress(x, 0.0, z, layer))
         assert error.max() < tolerance * p_h, name
-        bound = s.stress_uncertainty(x, 0.0, z, layer)
+        bound = s.sample(Points(x, 0.0, z, layer), "stress").uncertainty
         assert np.all(bound > np.where(error > 1e-6 * p_h, error / 2, 0)), name
         # an estimate a hundred times the tolerance would be of no use
         assert np.median(bound) < 10 * tolerance * p_h, name
@@ -95,7 +96,12 @@ def test_fast_level_knows_how_far_it_is_off():
     p_h = 3 * W / (2 * np.pi * a_h**2)
     for place in ((0 * z, 0.0, z, None), (x, 0.0, h, 0), (x, 0.0, h, 1)):
         error = np.abs(s.stress(*place) - exact.stress(*place))
-        assert np.all(error <= s.stress_uncertainty(*place) + exact.stress_uncertainty(*place) + 1e-12 * p_h)
+        assert np.all(
+            error
+            <= s.sample(Points(*place), "stress").uncertainty
+            + exact.sample(Points(*place), "stress").uncertainty
+            + 1e-12 * p_h
+        )
 
 
 FAST = QUALITY["fast"]
@@ -110,13 +116,11 @@ COARSE = [
 @pytest.mark.parametrize(("ratio", "thickness", "nu", "size"), COARSE)
 def test_coarse_meshes_know_how_far_radius_approach_peak_and_stiffness_are_off(ratio, thickness, nu, size):
     s, exact, _ = both(ratio, thickness, nu, size=size, reference_estimate=True)
-    U = {"stiffness": (s.stiffness_uncertainty, exact.stiffness_uncertainty)}
-    for name in ("contact_radius", "approach", "peak_pressure"):
-        U[name] = getattr(s.uncertainty, name), getattr(exact.uncertainty, name)
-    for name, (own, of_exact) in U.items():
+    for name in ("stiffness", "contact_radius", "approach", "peak_pressure"):
+        (value, own), (expected, of_exact) = (one.sample(None, name) for one in (s, exact))
         # of 624 numbers one is 1.01 U: p0, 3e-8, at a size that no quality has
         allowed = (1 if size == FAST else 1.1) * own + of_exact
-        assert abs(getattr(s, name) - getattr(exact, name)) < allowed, name
+        assert abs(value - expected) < allowed, name
 
 
 def test_nearly_incompressible_layers_do_not_lock():

@@ -7,6 +7,7 @@ from fem_reference import solve
 from fem_reference.axisymmetric import Discretisation
 from fem_reference.mesh import EDGE_SIZE, Grading, meridian_mesh
 from fem_reference.recovery import EDGE_SERIES, HarmonicField
+from verification.problem.point_answers import Points
 from verification.sources.references import hamilton, integral_equation
 
 R, W, E, NU = 10e-3, 20.0, 210e9, 0.3
@@ -56,11 +57,11 @@ def test_the_estimate_covers_the_error_in_the_strip_around_the_edge(friction):
     offset = np.where(rng.random(n) < 0.5, rng.uniform(0, 0.1, n), 10 ** rng.uniform(-9, -1, n))
     r, theta = a * (1 + rng.choice([-1, 1], n) * offset), rng.uniform(0, 2 * np.pi, n)
     points = r * np.cos(theta), r * np.sin(theta), 0.05 * a * np.maximum(rng.uniform(-0.5, 1, n), 0) ** 2
-    stress, uncertainty = s.stress_with_uncertainty(*points)
+    stress, uncertainty = s.sample(Points(*points), "stress")
     excess = np.abs(stress - exact.stress(*points)) > uncertainty + 1e-9 * P_H
     assert excess.mean() < 1e-3
     # at the edge the uncertainty of sigma is about the square root of that of the radius
-    assert s.stress_uncertainty(-a, 0.0, 0.0)[0, 0] < 2e-2 * P_H
+    assert s.sample(Points(-a, 0.0, 0.0), "stress").uncertainty[0, 0] < 2e-2 * P_H
 
 
 def test_hard_ultra_thin_film_converges():

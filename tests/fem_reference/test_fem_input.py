@@ -7,6 +7,7 @@ import pytest
 
 from fem_reference import NotConverged, levels, solve
 from fem_reference.contact_solver import CONTRASTS, QUALITY, _size
+from verification.problem.point_answers import Points
 
 E = 210e9
 # scalars of numpy are as good as floats
@@ -79,12 +80,10 @@ def test_points_within_rounding_of_the_interface_lie_on_it(coated):
         assert (coated.stress(1e-5, 0.0, z) == upper).all()
 
 
-def test_uncertainty_not_estimated_raises_an_error(coated):
+def test_an_uncertainty_that_is_not_estimated_is_none(coated):
     assert coated.uncertainty is None
-    with pytest.raises(ValueError, match="estimate_uncertainty=True"):
-        coated.stress_uncertainty(0.0, 0.0, 0.0)
-    with pytest.raises(ValueError, match="estimate_uncertainty=True"):
-        coated.pressure_uncertainty(0.0)
+    for quantity in ("pressure", "stress", "displacement", "approach", "stiffness"):
+        assert coated.sample(Points(0.0), quantity).uncertainty is None, quantity
 
 
 def test_shapes_follow_broadcasting(coated):

@@ -5,6 +5,7 @@ import pytest
 
 from fem_reference import solve_prescribed
 from fem_reference.validation import GivenPressure
+from verification.problem.point_answers import Points
 
 E, NU = 210e9, 0.3
 A, P = 1e-4, 1e9
@@ -63,7 +64,7 @@ def test_given_pressure_ends_at_the_load_radius_within_rounding():
 
 def test_given_pressure_carries_no_pressure_uncertainty():
     s = solve_prescribed(pressure=P, load_radius=A, coatings=(), substrate=(E, NU), quality="fast")
-    assert np.all(s.pressure_uncertainty(np.linspace(0, 0.99, 5) * A) == 0)
+    assert np.all(s.sample(Points(np.linspace(0, 0.99, 5) * A), "pressure").uncertainty == 0)
     assert s.uncertainty.contact_radius == 0
     assert 0 < s.uncertainty.approach < 1e-3 * s.approach
 

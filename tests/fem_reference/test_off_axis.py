@@ -8,6 +8,7 @@ from fem_reference.harmonic_compliance import harmonic_compliance
 from fem_reference.loading import solve_traction
 from fem_reference.off_axis import AngularPressure, OffAxisFields, discretised
 from fem_reference.scaling import LayeredSolid
+from verification.problem.point_answers import Points
 from verification.sources.references.hertz_ellipse import HertzEllipse
 
 E, NU, F = 210e9, 0.3, 0.25
@@ -101,10 +102,10 @@ def test_the_stated_uncertainty_covers_the_change_from_a_finer_solution():
     solid = {"pressure": three_lobes, "reach": A, "coatings": COATINGS, "substrate": STEEL, "friction": F}
     coarse, fine = (check_pressure(**solid, harmonics=5, size=size) for size in (0.34, 0.2))
     x, z = np.meshgrid(A * np.linspace(-1.3, 1.3, 9), A * np.array([0.0, 0.2, 0.4, 1.0]))
-    stress, U = coarse.stress_with_uncertainty(x, 0.3 * A, z)
+    stress, U = coarse.sample(Points(x, 0.3 * A, z), "stress")
     error = np.abs(fine.stress(x, 0.3 * A, z) - stress)
     assert np.mean(error > U) < 0.02
-    u, U = coarse.displacement_with_uncertainty(x, 0.3 * A, z)
+    u, U = coarse.sample(Points(x, 0.3 * A, z), "displacement")
     assert np.mean(np.abs(fine.displacement(x, 0.3 * A, z) - u) > U) < 0.02
 
 

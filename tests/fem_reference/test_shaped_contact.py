@@ -6,6 +6,7 @@ import pytest
 from fem_reference import NotConverged, solve_shape
 from fem_reference.indenter_height import indenter_height
 from verification.problem.indenter_shape import height_of
+from verification.problem.point_answers import EDGE, Points
 from verification.sources.references.hertz_ellipse import pressed_ellipsoid
 
 STEEL = (210e9, 0.3)
@@ -61,10 +62,12 @@ def test_beside_its_own_edge_the_pressure_is_as_uncertain_as_it_is_wrong():
     p = EXACT.pressure(share * exact, 0.0)
     at_same_share = np.abs(found.pressure(share * found.extent_x) - p)
     at_same_place = np.abs(found.pressure(share * exact) - p)
-    relative = found.relative_to_edge.pressure_uncertainty(share * found.extent_x)
+    relative = found.sample(Points(share * found.extent_x, frame=EDGE), "pressure").uncertainty
     assert np.all(at_same_share <= relative)
-    assert np.all(at_same_place <= found.pressure_uncertainty(share * exact))
-    assert np.all(relative < 0.5 * found.pressure_uncertainty(share * exact)), "the edge counts twice"
+    assert np.all(at_same_place <= found.sample(Points(share * exact), "pressure").uncertainty)
+    assert np.all(relative < 0.5 * found.sample(Points(share * exact), "pressure").uncertainty), (
+        "the edge counts twice"
+    )
 
 
 def test_a_start_turned_by_a_right_angle_is_not_taken_for_the_contact():

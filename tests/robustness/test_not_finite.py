@@ -61,10 +61,10 @@ PLACES = (
     Place("semianalytic.subsurface", "stress"),
     Place("semianalytic.fields", "stress"),
     Place("semianalytic.point_force", "half_space_stress"),
-    Place("semianalytic.solution", "Solution.pressure"),
-    Place("semianalytic.solution", "Solution.stress_with_uncertainty", 0),
-    Place("semianalytic.solution", "Solution.stress_with_uncertainty", 1),
-    Place("semianalytic.solution", "Solution.pressure_uncertainty"),
+    Place("semianalytic.solution", "Solution._pressure", 0),
+    Place("semianalytic.solution", "Solution._pressure", 1),
+    Place("semianalytic.solution", "Solution._stress", 0),
+    Place("semianalytic.solution", "Solution._stress", 1),
     Place("semianalytic.uncertainty", "of_contact", "approach"),
     Place("semianalytic.uncertainty", "of_contact", "peak_pressure"),
     Place("fem_reference.mesh", "meridian_mesh", "points"),
@@ -86,7 +86,7 @@ PLACES = (
     Place("fem_reference.recovery", "HarmonicField.__call__", 1),
     Place("fem_reference.estimate", "PressureEstimate.__call__"),
     Place("fem_reference.estimate", "StressEstimate.__call__"),
-    Place("fem_reference.solved_contact", "Solution.stress_with_uncertainty", 0),
+    Place("fem_reference.solved_contact", "Solution._stress", 0),
 )
 
 

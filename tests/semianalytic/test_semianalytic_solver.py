@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import semianalytic
+from verification.problem.point_answers import EDGE, Points
 from verification.sources.references import integral_equation
 
 R, W = 10e-3, 20.0
@@ -59,15 +60,17 @@ def test_without_edge_correction_hertz_is_of_first_order():
 def test_the_error_of_a_staircase_falls_beyond_the_grid_too():
     s = solve(edge_correction=False, estimate_uncertainty=True)
     at = np.array([s.nodes[-1], 1.5 * s.nodes[-1], 2.0 * s.nodes[-1]])
-    U = s.stress_uncertainty(at, 0.0, 0.0)[0, 0]
+    U = s.sample(Points(at, 0.0, 0.0), "stress").uncertainty[0, 0]
     assert (U[1:] <= 1.01 * U[0]).all()
-    assert (s.pressure_uncertainty(at)[1:] <= s.pressure_uncertainty(at[:1])).all()
+    assert (
+        s.sample(Points(at), "pressure").uncertainty[1:] <= s.sample(Points(at[:1]), "pressure").uncertainty
+    ).all()
 
 
 def test_the_displacement_of_patches_alone_is_within_its_uncertainty_beside_the_staircase():
     s, exact = solve(edge_correction=False, estimate_uncertainty=True), solve()
     x = np.linspace(0, 1.2, 40) * A_H
-    u, U = s.displacement_with_uncertainty(x, 0.1 * A_H, 0 * x)
+    u, U = s.sample(Points(x, 0.1 * A_H, 0 * x), "displacement")
     assert (np.abs(u - exact.displacement(x, 0.1 * A_H, 0 * x)) <= U).all()
 
 
@@ -81,7 +84,9 @@ def test_a_pressure_whose_change_does_not_fall_is_refined():
     )  # fmt: skip
     share = 1 - np.geomspace(1e-4, 0.2, 60)
     error = s.pressure(share * s.contact_radius) - finer.pressure(share * finer.contact_radius)
-    assert (np.abs(error) <= s.relative_to_edge.pressure_uncertainty(share * s.contact_radius)).all()
+    assert (
+        np.abs(error) <= s.sample(Points(share * s.contact_radius, frame=EDGE), "pressure").uncertainty
+    ).all()
 
 
 @pytest.mark.slow
@@ -180,7 +185,7 @@ def test_uncertainty_brackets_the_error_and_not_by_orders():
     assert {parameter for _, parameter, _ in u.budget} == parameters
     x = s.surface_nodes
     error = np.abs(s.pressure(x) - P_H * np.sqrt(np.maximum(1 - (x / A_H) ** 2, 0)))
-    assert np.all(error <= s.pressure_uncertainty(x))
+    assert np.all(error <= s.sample(Points(x), "pressure").uncertainty)
 
 
 def test_uncertainty_of_the_default_brackets_hertz():
@@ -191,7 +196,7 @@ def test_uncertainty_of_the_default_brackets_hertz():
     assert abs(s.peak_pressure - P_H) <= u.peak_pressure < 1e-4 * P_H
     z = np.linspace(0, 3, 13) * A_H
     zz = s.stress(0.0, 0.0, z)[2, 2] + P_H / (1 + (z / A_H) ** 2)
-    assert np.all(np.abs(zz) <= s.stress_uncertainty(0.0, 0.0, z)[2, 2])
+    assert np.all(np.abs(zz) <= s.sample(Points(0.0, 0.0, z), "stress").uncertainty[2, 2])
 
 
 @pytest.mark.parametrize(("ratio", "h"), [(4.0, 0.05), (0.25, 0.2), (10.0, 0.2)])
@@ -203,13 +208,11 @@ def test_a_thin_film_on_few_patches_states_how_little_is_resolved(ratio, h):
         assert abs(getattr(s, name) - getattr(exact, name)) <= getattr(s.uncertainty, name), name
 
 
-def test_uncertainty_not_estimated_is_refused():
+def test_an_uncertainty_that_is_not_estimated_is_none():
     s = solve(patches=65)
     assert s.uncertainty is None
-    with pytest.raises(ValueError, match="estimate_uncertainty=True"):
-        s.pressure_uncertainty(0.0)
-    with pytest.raises(ValueError, match="estimate_uncertainty=True"):
-        s.stress_uncertainty(0.0, 0.0, 0.0)
+    for quantity in ("pressure", "stress", "displacement", "approach", "stiffness"):
+        assert s.sample(Points(0.0), quantity).uncertainty is None, quantity
 
 
 def test_the_plain_conversion_is_worse_and_says_so():
@@ -260,15 +263,11 @@ def test_errors_against_the_integral_equation_are_within_the_uncertainty(name):
         assert error <= getattr(s.uncertainty, quantity) < 1e-3 * getattr(exact, quantity), quantity
     a, h = exact.contact_radius, CASES[name]["coatings"][0][2]
     x = np.array([-2, -1.05, -0.9, -0.4, 0, 0.5, 0.95, 1.3]) * a
-    assert np.all(np.abs(s.pressure(x) - exact.pressure(x)) <= s.pressure_uncertainty(x))
+    assert np.all(np.abs(s.pressure(x) - exact.pressure(x)) <= s.sample(Points(x), "pressure").uncertainty)
     for body in ("flat", "ball") if "ball" in given else ("flat",):
         for z, layer in ((0.05 * h, 0), (h, 1), (a, None)):
-            sigma, U = (
-                s.stress_with_uncertainty(x, 0.1 * a, z, layer, body=body)
-                if body == "flat"
-                else (s.stress_with_uncertainty(x, 0.1 * a, z, body=body))
-            )
-            true = exact.stress(x, 0.1 * a, z, layer if body == "flat" else None, body=body)
+            points = Points(x, 0.1 * a, z, layer if body == "flat" else None, body)
+            (sigma, U), (true, _) = (one.sample(points, "stress") for one in (s, exact))
             assert np.all(np.abs(sigma - true) <= U), (body, z)
 
 
@@ -297,9 +296,12 @@ def test_a_smooth_edge_on_the_finest_grid_alone_has_an_uncertainty():
     """Contact of 11 patches to the radius; coarser ones do not resolve its edge."""
     s = indent(lambda x, y: (x**2 + y**2) / (2 * R), 3 * A_H, estimate_uncertainty=True, patches=33)
     x = np.array([0.0, 0.5, 0.8]) * A_H
-    assert np.all(np.abs(s.pressure(x) - P_H * np.sqrt(1 - (x / A_H) ** 2)) <= s.pressure_uncertainty(x))
+    assert np.all(
+        np.abs(s.pressure(x) - P_H * np.sqrt(1 - (x / A_H) ** 2))
+        <= s.sample(Points(x), "pressure").uncertainty
+    )
     zz = s.stress(0.0, 0.0, x)[2, 2] + P_H / (1 + (x / A_H) ** 2)
-    assert np.all(np.abs(zz) <= s.stress_uncertainty(0.0, 0.0, x)[2, 2])
+    assert np.all(np.abs(zz) <= s.sample(Points(0.0, 0.0, x), "stress").uncertainty[2, 2])
 
 
 # Solutions as plain records
@@ -328,8 +330,8 @@ def answers(solution):
     found += [solution.stress(x, 0.0, 0.0), solution.stress_plane(z), solution.displacement_plane(z)]
     found += [solution.displacement(x, 0.1 * A_H, z), solution.stress(x, 0.0, STIFF[0][2], layer=0)]
     if solution.uncertainty is not None:
-        found += [solution.uncertainty, solution.pressure_uncertainty(x)]
-        found += [*solution.stress_with_uncertainty(x, 0.0, z), solution.stress_uncertainty(x, 0.0, z)]
+        found += [solution.uncertainty, solution.sample(Points(x), "pressure").uncertainty]
+        found += solution.sample(Points(x, 0.0, z), "stress")
     return found if solution.coarser is None else found + answers(solution.coarser)
 
 
@@ -405,7 +407,7 @@ def test_surface_nodes_of_a_wide_square_are_its_patches(wide):
 
 def test_uncertainty_of_the_pressure_of_patches_covers_hertz_and_falls_beyond_the_contact(wide):
     x = wide.nodes
-    U = wide.pressure_uncertainty(x)
+    U = wide.sample(Points(x), "pressure").uncertainty
     assert np.all(np.abs(wide.pressure(x) - P_H * np.sqrt(np.maximum(1 - (x / A_H) ** 2, 0))) <= U)
     beyond = U[x > A_H + 2 * wide.diagnostics.patch_size]
     assert np.all(np.diff(beyond) <= 0)
@@ -414,7 +416,7 @@ def test_uncertainty_of_the_pressure_of_patches_covers_hertz_and_falls_beyond_th
 
 def test_stress_uncertainty_of_patches_covers_the_last_refinement(wide):
     x = np.array([0.6, 0.7, 0.8, 1.0]) * A_H
-    sigma, U = wide.stress_with_uncertainty(x, 0.0, 0.0)
+    sigma, U = wide.sample(Points(x, 0.0, 0.0), "stress")
     assert np.all(np.abs(sigma - wide.coarser.stress(x, 0.0, 0.0)) <= U)
 
 

@@ -10,6 +10,7 @@ from semianalytic import convolution, influence, smooth_edge
 from semianalytic.edge_shape import EVEN, FULL, ROUND, Shape
 from semianalytic.grid import Grid
 from semianalytic.inputs import Body, Numerics
+from verification.problem.point_answers import EDGE, Points
 
 STEEL = (210e9, 0.3)
 E_STAR = STEEL[0] / (1 - STEEL[1] ** 2)
@@ -130,7 +131,7 @@ def test_ellipse_of_any_direction_is_hertzs_within_its_uncertainty(ratio, degree
         assert ellipse.semi_axes(s) == pytest.approx((ellipse.a, ellipse.b), rel=1e-4)
     x = np.linspace(-1.05, 1.05, 41)[:, None] * ellipse.a
     error = np.abs(s.pressure(x, x.T) - ellipse.pressure(x, x.T))
-    assert np.all(error <= s.pressure_uncertainty(x, x.T))
+    assert np.all(error <= s.sample(Points(x, x.T), "pressure").uncertainty)
     # far away there is none
     assert not s.pressure(10 * x[:5], x.T).any()
 
@@ -195,7 +196,7 @@ def test_on_few_patches_a_contour_has_no_more_waves_than_they_show():
     given = {"radius": 14.498e-3, "indenter": ("ellipsoid", (10.51e-3, 20e-3)), "load": 20.0}
     film = {"coatings": ((76.67e9, 0.4192, 30.26138e-6),), "substrate": (210e9, 0.3929)}
     found = semianalytic.solve(**given, **film)
-    assert found.pressure_uncertainty(0.0, 0.0) < 1e-5 * found.peak_pressure
+    assert found.sample(Points(0.0, 0.0), "pressure").uncertainty < 1e-5 * found.peak_pressure
 
 
 def test_pressure_and_stress_end_with_a_contact_of_lobes():
@@ -283,7 +284,9 @@ def test_punch_with_a_round_edge_is_sneddons(flat):
 
     places = np.array([0.0, 0.4, 0.9, 0.95, 0.99, 0.999])
     exact = np.array([pressure(r) for r in places])
-    assert np.all(np.abs(found.pressure(places) - exact) <= found.pressure_uncertainty(places))
+    assert np.all(
+        np.abs(found.pressure(places) - exact) <= found.sample(Points(places), "pressure").uncertainty
+    )
 
 
 def test_asperities_far_apart_carry_half_the_load_each_beside_a_point_force():
@@ -333,7 +336,7 @@ def test_the_stress_at_the_edge_of_an_ellipse_is_within_a_small_uncertainty():
     found, finer = (semianalytic.solve(**pressed, **coated, patches=n) for n in (257, 513))
     angle = np.array([0.0, 0.7, np.pi / 2])
     (stress, U), (better, _) = (
-        one.relative_to_edge.stress_with_uncertainty(*one._level.shape.on_ray(1.0, angle), 0.0)
+        one.sample(Points(*one._level.shape.on_ray(1.0, angle), 0.0, frame=EDGE), "stress")
         for one in (found, finer)
     )
     assert np.all(np.abs(stress - better) <= U)

@@ -132,7 +132,7 @@ def _exact(problem: CoatedContact, source: str, points: int) -> list[Profile]:
         contact_radius=a, peak_pressure=p0, approach=problem.delta_h, stiffness=problem.S_h
     )
     found = [
-        Profile(name, "contact", origin, np.array([QUANTITIES[name].value(hertz, problem)]), source)
+        Profile(name, "contact", origin, np.array([getattr(hertz, name)]), source)
         for name in SCALARS + SLOPES
     ]
     tension = ((1 - 2 * nu) / 3 + problem.friction * np.pi * (4 + nu) / 8) * p0

@@ -35,10 +35,11 @@ from verification.cases.toml_file import (
 from verification.cases.unit_numbers import InSI, Metres, Newtons
 from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Claim
-from verification.problem.coated_contact import BALL, FLAT, CoatedContact
+from verification.problem.coated_contact import CoatedContact
 from verification.problem.display_units import Units
 from verification.problem.indenter_shape import Indenter
 from verification.problem.line_profile import Line, line_of, lines_of, oblique_lines
+from verification.problem.point_answers import BALL, FLAT
 from verification.sources.load_of_approach import load_of_approach, own_radius
 from verification.sources.source_registry import METHODS, sources_of
 

@@ -9,8 +9,9 @@ from collections.abc import Iterator, Mapping
 
 from verification.cases.toml_file import spoken
 from verification.cases.unit_numbers import InSI
-from verification.problem.coated_contact import BALL, CoatedContact
+from verification.problem.coated_contact import CoatedContact
 from verification.problem.display_units import prefixed
+from verification.problem.point_answers import BALL
 from verification.sources.load_of_approach import own_radius
 
 MODULI = (1e6, 2e12)  # Pa

@@ -21,7 +21,7 @@ from verification.cases.toml_file import CaseError
 from verification.cases.unit_numbers import FORCES, LENGTHS, STRESSES
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import PrescribedLoad
-from verification.problem.evaluation_points import Points
+from verification.problem.evaluation_points import TablePoints
 from verification.problem.line_profile import Profile
 from verification.problem.loading_curve import CONTROLS, LoadingCurve, Problem
 from verification.problem.quantity import CURVES, EXTREMES, PEAKS, QUANTITIES, SCALARS, SLOPES
@@ -163,7 +163,7 @@ class PublishedColumn:
 
     profile: Profile
     departure: Array
-    at: Points
+    at: TablePoints
     file: str
     column: str
     rows: tuple[int, ...]
@@ -264,10 +264,10 @@ def columns_of(
 
 def _points(
     at: PositionEntry | None, content: PublishedTable, units: dict[str, float], problem: Problem, where: str
-) -> Points:
+) -> TablePoints:
     n = len(content.rows)
     if at is None:
-        return Points.origin(n)
+        return TablePoints.origin(n)
     try:
         unit = si_of(at.unit, units, "at")
 
@@ -282,10 +282,10 @@ def _points(
         if isinstance(problem, LoadingCurve):
             for control in CONTROLS:
                 if (given := getattr(at, control)) is not None:
-                    return Points.on_curve(control, metres(given), at.unit, unit)
+                    return TablePoints.on_curve(control, metres(given), at.unit, unit)
             raise ValueError(f"at: give {' or '.join(CONTROLS)}, for the sphere has no load")
         x, y, z = (metres(v) for v in (at.x, at.y, at.z))
-        return Points.of(x, y, z, problem.coatings, at.layer, at.unit, unit)
+        return TablePoints.of(x, y, z, problem.coatings, at.layer, at.unit, unit)
     except ValueError as error:
         raise CaseError(f"{where}: {error}") from None
 

@@ -9,7 +9,7 @@ from verification.cases.graded_coating import LAYERS, Course, Modulus, Table, mo
 from verification.cases.toml_file import Poisson, Positive, Strict
 from verification.cases.unit_numbers import AnyPascals, Metres, Pascals, is_of
 from verification.problem.array_types import Ball, Coatings
-from verification.problem.coated_contact import BALL
+from verification.problem.point_answers import BALL
 
 Expansion = Annotated[float, Field(ge=-1e-3, le=1e-3)]
 TemperatureChange = Annotated[float, Field(ge=-5000, le=5000)]

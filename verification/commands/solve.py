@@ -40,7 +40,7 @@ from verification.desk.contact_answer import (
 from verification.desk.layer_limits import LayerLimit, layer_limits, layer_name, yield_strengths
 from verification.desk.stack_text import body_label, conditions, described, outside_verified, stack, units_of
 from verification.judging.outcome import Outcome
-from verification.problem.coated_contact import FLAT
+from verification.problem.point_answers import FLAT
 from verification.problem.quantity import QUANTITIES
 from verification.regression.run_exit_codes import EXIT
 from verification.running.case_result import describe, message_of

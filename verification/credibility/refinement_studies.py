@@ -110,10 +110,7 @@ def errors_against(exact: Solution, problem: CoatedContact) -> Callable[[Solutio
             np.abs(found.stress(x, 0.0, z, layer) - sigma).max()
             for (x, z, layer), sigma in zip(places, stresses, strict=True)
         ]
-        scalars = {
-            ALL[q].symbol: abs(ALL[q].value(found, problem) / ALL[q].value(exact, problem) - 1)
-            for q in SCALARS
-        }
+        scalars = {ALL[q].symbol: abs(getattr(found, q) / getattr(exact, q) - 1) for q in SCALARS}
         return scalars | {
             "pressure": float(np.sqrt(weight @ np.mean(error**2, axis=1))) / p0,
             "stress": float(np.max(worst)) / problem.p_h,

@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from verification.desk.answer_stresses import Course
 from verification.desk.contact_answer import Answer, Names, with_name
 from verification.desk.section_field import Section
-from verification.problem.coated_contact import FLAT
 from verification.problem.display_units import Units
+from verification.problem.point_answers import FLAT
 from verification.running.checked_files import write_atomically
 from verification.study.pages.study_figures import COLOURS
 

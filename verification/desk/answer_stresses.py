@@ -17,8 +17,9 @@ from itertools import accumulate
 import numpy as np
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import BALL, CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.either_body import on_body
+from verification.problem.point_answers import BALL, Points
 from verification.problem.quantity import largest_strain, von_mises
 from verification.sampling.largest_tension import Search
 from verification.study.friction_planes import (
@@ -223,7 +224,7 @@ class _Layers:
         search = Search(self.solution, self.problem)
         # the search needs uncertainties around the edges alone, and states its own elsewhere
         value = self.solution.stress(search.x, 0.0, 0.0, layer=0)[0, 0]
-        _, around = stress_with_uncertainty(self.solution, search.x[search.edges], 0.0, 0.0, layer=0)
+        _, around = self.solution.sample(Points(search.x[search.edges], layer=0), "stress")
         U = np.full_like(value, np.nan)
         U[search.edges] = np.nan if around is None else around[0, 0]
         found = search.largest(value, None if around is None else U)

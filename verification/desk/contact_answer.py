@@ -10,9 +10,10 @@ import numpy as np
 
 from verification.desk.answer_stresses import Course, Extreme, stresses
 from verification.desk.stack_text import units_of
-from verification.problem.coated_contact import FLAT, CoatedContact
+from verification.problem.coated_contact import CoatedContact
 from verification.problem.display_units import Units
-from verification.problem.quantity import QUANTITIES, SCALARS
+from verification.problem.point_answers import FLAT
+from verification.problem.quantity import SCALARS
 from verification.running.slicing import sliced
 from verification.sources.source_registry import solvers
 
@@ -62,10 +63,7 @@ def answer(
     """
     begin = time.perf_counter()
     solution = solvers()[source](problem, numerics or {})
-    numbers = {
-        name: (QUANTITIES[name].value(solution, problem), QUANTITIES[name].uncertainty(solution, problem))
-        for name in SCALARS
-    }
+    numbers = {name: tuple(solution.sample(None, name)) for name in SCALARS}
     found, drawn = stresses(solution, problem, residual, layers)
     strains = tuple(at for at in found if at.quantity == "strain")
     extremes = tuple(at for at in found if at.quantity != "strain")

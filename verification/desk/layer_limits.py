@@ -14,7 +14,8 @@ from verification.cases.plausibility import as_stress, beyond_limits, strain_war
 from verification.desk.answer_stresses import Extreme
 from verification.desk.contact_answer import Answer, answer, summary, with_name
 from verification.desk.stack_text import body_label
-from verification.problem.coated_contact import BALL, FLAT, CoatedContact
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.point_answers import BALL, FLAT
 
 NEAR = 2e-3  # of the strength: a load as near as this is found, and interpolated from there
 MOST_SOLVES, FARTHEST = 8, 1e4  # of one layer; factor of the load between two of them

@@ -8,7 +8,8 @@ import numpy as np
 
 from verification.desk.answer_stresses import first_principal
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import FLAT, CoatedContact
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.point_answers import FLAT
 from verification.sources.source_registry import METHODS, solvers
 from verification.study.friction_planes import in_plane
 

@@ -11,8 +11,9 @@ from verification.cases.random_problems import (
     RATIO,
     THICKNESS,
 )
-from verification.problem.coated_contact import BALL, FLAT, CoatedContact
+from verification.problem.coated_contact import CoatedContact
 from verification.problem.display_units import Units, prefixed
+from verification.problem.point_answers import BALL, FLAT
 from verification.sources.load_of_approach import own_radius
 
 FILMS = (FILM_THICKNESS[0], OVER_INTERLAYER[1])

@@ -1,8 +1,9 @@
 """Claims a case makes when its file names none: every quantity on every line, source against source."""
 
 from verification.judging.verdict import Claim
-from verification.problem.coated_contact import FLAT, CoatedContact
+from verification.problem.coated_contact import CoatedContact
 from verification.problem.line_profile import EDGE_LINE, Line, lines_of, oblique_lines
+from verification.problem.point_answers import FLAT
 from verification.problem.quantity import (
     BALL_PEAKS,
     DISPLACEMENTS,

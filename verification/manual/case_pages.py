@@ -12,7 +12,7 @@ from verification.manual.baseline_numbers import baseline, points, stored
 from verification.manual.markdown_text import shown, symbol, table, text, typeset
 from verification.page.number_text import scientific
 from verification.page.source_labels import pair_label
-from verification.problem.coated_contact import BALL
+from verification.problem.point_answers import BALL
 from verification.report.tables.case_lookup import layers
 from verification.report.tables.case_tables import contact_tables, facts, layer_table
 from verification.running.case_result import CaseResult

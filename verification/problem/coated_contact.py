@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from verification.problem.array_types import Array, Ball, Coatings
 from verification.problem.indenter_shape import Indenter, require_shape
+from verification.problem.point_answers import BALL, FLAT, Points
 
-FLAT, BALL = "flat", "ball"  # the two bodies of a contact
 AT_RIM = 1e-8  # distance from the rim of a prescribed load over its radius, within which a point is on it
 
 
@@ -174,20 +174,17 @@ class Uncertainty:
     contact_radius: float = 0.0
     approach: float = 0.0
     peak_pressure: float = 0.0
+    stiffness: float = 0.0
     budget: tuple[tuple[str, str, float], ...] = ()
 
 
-class NotClaimed(ValueError):
-    """A source does not give the field that was requested; this is no failure of it."""
-
-
 class Solution(Protocol):
-    """Solution that both methods and the references return; see each method for its own record.
+    """Solution of a contact by a method or a reference: a source that answers ``sample``.
 
-    Of a contact with an elastic ball, stresses and displacements are those of the flat, with ``body="ball"``
-    those of the ball: z into it, x and y as on the flat.
-    ``displacement`` of a reference without displacements raises NotClaimed. ``stiffness`` is dW/d
-    delta, None where a method has none.
+    sample : one field at points, or one scalar, see ``point_answers``; of a contact with an elastic ball its
+    fields are those of either body.   frames : of points, in which its uncertainties are its own.
+    coarser : the solution that its uncertainty is estimated by, None where there is none.
+    uncertainty : of the scalars with its budget, None where none is stated.
     """
 
     @property
@@ -197,62 +194,19 @@ class Solution(Protocol):
     @property
     def peak_pressure(self) -> float: ...
     @property
-    def stiffness(self) -> float | None: ...
-    @property
-    def stiffness_uncertainty(self) -> float | None: ...
-    @property
     def uncertainty(self) -> Any: ...
     @property
     def diagnostics(self) -> Any: ...
     @property
     def surface_nodes(self) -> Array: ...
+    @property
+    def frames(self) -> tuple[str, ...]: ...
+    @property
+    def coarser(self) -> Any: ...
+    def sample(self, points: Points | None, quantity: str, uncertainty: bool = True) -> Any: ...
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array: ...
     def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array: ...
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array: ...
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array: ...
-    def stress_uncertainty(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None
-    ) -> Array: ...
-    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array: ...
-
-
-def stress_with_uncertainty(
-    solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
-) -> tuple[Array, Array | None]:
-    """Stress and its uncertainty [Pa] at points, (3, 3) + points; None where the solution states none.
-
-    A solution with a method of this name evaluates its stress once for both.
-    """
-    of: dict[str, Any] = {"layer": layer} if body == FLAT else {"layer": layer, "body": body}
-    return _with_uncertainty(solution, "stress", x, y, z, **of)
-
-
-def displacement_with_uncertainty(
-    solution: Solution, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT
-) -> tuple[Array, Array | None]:
-    """Displacement and its uncertainty [m] at points, (3,) + points, as ``stress_with_uncertainty``."""
-    of = {} if body == FLAT else {"body": body}
-    return _with_uncertainty(solution, "displacement", x, y, z, **of)
-
-
-def relative_to_edge(solution: Solution) -> Solution:
-    """The solution for points meant as x/a, with uncertainties of its own for them where it states such."""
-    # Looked up in the type, as below.
-    view = getattr(type(solution), "relative_to_edge", None)
-    return solution if view is None else view.fget(solution)
-
-
-def _with_uncertainty(
-    solution: Solution, field: str, *points: ArrayLike, **of: Any
-) -> tuple[Array, Array | None]:
-    if solution.uncertainty is None:
-        return getattr(solution, field)(*points, **of), None
-    # Looked up in the type: a wrapper that changes the field alone must not be passed over.
-    both = getattr(type(solution), f"{field}_with_uncertainty", None)
-    if both is not None:
-        value, U = both(solution, *points, **of)
-        return value, U
-    return getattr(solution, field)(*points, **of), getattr(solution, f"{field}_uncertainty")(*points, **of)
 
 
 def _require_solid(coatings: Coatings, substrate: tuple[float, float], friction: float, of: str = "") -> None:

@@ -1,4 +1,4 @@
-"""Points of the solid at which quantities are evaluated, and the layers in which they lie."""
+"""TablePoints of the solid at which quantities are evaluated, and the layers in which they lie."""
 
 from dataclasses import dataclass
 
@@ -28,8 +28,8 @@ def layer_at(z: Array, coatings: Coatings, layer: int | None) -> NDArray[np.int_
 
 
 @dataclass(frozen=True, eq=False)
-class Points:
-    """Points x, y, z [m] with the ``layer`` of each.
+class TablePoints:
+    """TablePoints x, y, z [m] with the ``layer`` of each.
 
     unit, in_si : unit of the source with its SI value, for names of lines.
     control : of a loading curve, whose values x are.
@@ -46,19 +46,19 @@ class Points:
     @classmethod
     def of(
         cls, x: Array, y: Array, z: Array, coatings: Coatings, layer: int | None, unit: str, in_si: float
-    ) -> "Points":
-        """Points with their layers, on an interface the upper one unless ``layer`` says otherwise."""
+    ) -> "TablePoints":
+        """TablePoints with their layers, on an interface the upper one unless ``layer`` says otherwise."""
         return cls(x, y, z, np.broadcast_to(layer_at(z, coatings, layer), z.shape), unit, in_si)
 
     @classmethod
-    def origin(cls, count: int) -> "Points":
+    def origin(cls, count: int) -> "TablePoints":
         """The point (0, 0, 0) for a number of the contact as a whole."""
         zero = np.zeros(count)
         return cls(zero, zero, zero, np.zeros(count, dtype=int), "m", 1.0)
 
     @classmethod
-    def on_curve(cls, control: str, value: Array, unit: str, in_si: float) -> "Points":
-        """Points of a loading curve by the value of its control [m]."""
+    def on_curve(cls, control: str, value: Array, unit: str, in_si: float) -> "TablePoints":
+        """TablePoints of a loading curve by the value of its control [m]."""
         zero = np.zeros(value.shape)
         return cls(value, zero, zero, np.zeros(value.shape, dtype=int), unit, in_si, control)
 
@@ -92,10 +92,10 @@ class Points:
             for rows in lines.values()
         ]
 
-    def part(self, rows: list[int]) -> "Points":
+    def part(self, rows: list[int]) -> "TablePoints":
         """Some of the points."""
         x, y, z, layer = self.x[rows], self.y[rows], self.z[rows], self.layer[rows]
-        return Points(x, y, z, layer, self.unit, self.in_si, self.control)
+        return TablePoints(x, y, z, layer, self.unit, self.in_si, self.control)
 
     def _place(self, *fixed: tuple[str, Array]) -> str:
         named = [f"{name} = {float(v[0]) / self.in_si:.6g} {self.unit}" for name, v in fixed if v[0] != 0]

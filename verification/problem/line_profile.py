@@ -8,7 +8,8 @@ import re
 from dataclasses import dataclass, replace
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import BALL, FLAT, CoatedContact
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.point_answers import BALL, FLAT
 
 EDGE_LINE = "surface near the edge"  # of a contact that is no disc
 ON_BALL = f"{BALL}, "  # before the name of a line of the ball

@@ -6,10 +6,8 @@ value at a fixed point there changes by the square root of the error of the radi
 The largest tension with its place, found by each source on its own solution, has no such root.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 
@@ -28,7 +26,6 @@ class Quantity:
     cap : largest admissible uncertainty, over the same divisor as differences, see ``divisor``.
     least : smallest cap against published values.
     component : of a stress or strain tensor.
-    derived : (solution, problem) -> value [SI], of a scalar that follows from the others of the contact.
     """
 
     name: str
@@ -42,7 +39,6 @@ class Quantity:
     least: float = 0.0
     component: tuple[int, int] | None = None
     meaning: str = ""
-    derived: Callable[[Any, Any], float] | None = None
 
     def divisor(self, value: float, p_h: float, p0: float, a: float, delta_h: float, delta: float) -> float:
         """Divisor of a difference [SI]: |value| of a scalar or slope, |value| >= a of a place.
@@ -58,24 +54,6 @@ class Quantity:
         if self.unit == "m":
             return max(abs(value), a)
         return min(p_h, p0) if p0 > 0 else p_h
-
-    def value(self, solution: Any, problem: Any) -> float:
-        """The scalar of a ``solution`` of ``problem`` [SI]."""
-        return float(self.derived(solution, problem) if self.derived else getattr(solution, self.name))
-
-    def uncertainty(self, solution: Any, problem: Any) -> float | None:
-        """Its uncertainty [SI], of a derived scalar sum_i |df/ds_i| U_i; None where none is stated."""
-        stated = solution.uncertainty
-        if stated is None:
-            return None
-        if self.kind == "slope":
-            return float(getattr(solution, f"{self.name}_uncertainty"))
-        if self.derived is None:
-            return float(getattr(stated, self.name))
-        known = {name: float(getattr(solution, name)) for name in SCALARS if not QUANTITIES[name].derived}
-        middle = self.derived(SimpleNamespace(**known), problem)
-        moved = (known | {name: value + getattr(stated, name)} for name, value in known.items())
-        return float(sum(abs(self.derived(SimpleNamespace(**one), problem) - middle) for one in moved))
 
 
 def _tensor(

@@ -11,8 +11,9 @@ from verification.cases.plausibility import strain_warning
 from verification.judging.invariants import Invariant, check, resolved
 from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import FLAT, CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.line_profile import Profile, lines_of
+from verification.problem.point_answers import FLAT
 from verification.problem.quantity import QUANTITIES, SCALARS, largest_strain
 from verification.running.case_result import CaseResult, SourceResult, diagnostics_of, message_of
 from verification.sampling.line_sampling import edge_of, ends_of, positions, sample, sample_contact
@@ -52,7 +53,7 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
         try:
             solution = available[source](case.problem, case.keywords(source))
             for name in SCALARS:
-                if not np.isfinite(value := QUANTITIES[name].value(solution, case.problem)):
+                if not np.isfinite(value := solution.sample(None, name, False).value):
                     raise ValueError(f"{name} = {value}; the solution is not finite")
         except Exception as error:  # any failed solve is a row of the report
             outcomes[source] = SourceResult(source, time.perf_counter() - begin, message_of(error))

@@ -2,83 +2,24 @@
 
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from verification.cases.published_file import PublishedCase
 from verification.cases.published_table import PublishedColumn
 from verification.judging.verdict import Outcome, Verdict, compare, judge
-from verification.problem.array_types import Array
-from verification.problem.coated_contact import (
-    CoatedContact,
-    PrescribedLoad,
-    Solution,
-    relative_to_edge,
-    stress_with_uncertainty,
-)
+from verification.problem.coated_contact import CoatedContact, PrescribedLoad, Solution
 from verification.problem.line_profile import Profile
 from verification.problem.loading_curve import Problem
 from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import CaseResult, SourceResult, diagnostics_of, message_of
-from verification.sampling.largest_tension import BESIDE
 from verification.sampling.point_values import values
 from verification.sources.loading_solution import Loading
 from verification.sources.source_record import Solver
 from verification.sources.source_registry import CLOSED, METHODS, PUBLISHED, solvers
-
-
-@dataclass(frozen=True, eq=False)
-class BesideEdge:
-    """``solution`` with points within ``BESIDE`` of the exact ``edge`` [m] at the same x/a of its own.
-
-    At a fixed x next to the edge an error da of the radius changes the pressure by q sqrt(2 da/a), whatever
-    the method; the radius is a quantity of its own.
-    """
-
-    solution: Solution
-    edge: float
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.solution, name)
-
-    def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """As of the solution."""
-        _, ratio = self._near(x, y, 0.0)
-        return self.solution.pressure(np.asarray(x) * ratio, np.asarray(y) * ratio)
-
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """As of the solution; of its view relative to the edge beside it."""
-        near, ratio = self._near(x, y, 0.0)
-        x, y = np.asarray(x) * ratio, np.asarray(y) * ratio
-        relative = relative_to_edge(self.solution).pressure_uncertainty(x, y)
-        return np.where(near, relative, self.solution.pressure_uncertainty(x, y))
-
-    def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        """As of the solution."""
-        _, ratio = self._near(x, y, z)
-        return self.solution.stress(np.asarray(x) * ratio, np.asarray(y) * ratio, z, layer)
-
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        """As ``pressure_uncertainty``."""
-        near, ratio = self._near(x, y, z)
-        place = np.asarray(x) * ratio, np.asarray(y) * ratio, z
-        relative = relative_to_edge(self.solution)
-        _, U = stress_with_uncertainty(self.solution, *place, layer=layer)
-        assert U is not None
-        if not near.any() or relative is self.solution:
-            return U
-        _, beside = stress_with_uncertainty(relative, *place, layer=layer)
-        assert beside is not None
-        return np.where(near, beside, U)
-
-    def _near(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
-        """Which points are beside the edge, and the factor on x and y."""
-        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
-        near = np.hypot(np.hypot(x, y) - self.edge, z) <= BESIDE * self.edge
-        return near, np.where(near, float(self.solution.contact_radius) / self.edge, 1.0)
 
 
 def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> CaseResult:
@@ -96,8 +37,6 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         begin = time.perf_counter()
         try:
             solution = solve(case.problem)
-            if isinstance(case.problem, CoatedContact) and case.problem.homogeneous:
-                solution = BesideEdge(solution, case.problem.a_h)
             claimed = {(c.quantity, c.line) for c in case.claims if source in c.between}
             found = [
                 _profile(solution, source, item, case)
@@ -199,5 +138,7 @@ def _departures(item: PublishedColumn) -> str:
 def _profile(
     solution: Solution | Loading, source: str, item: PublishedColumn, case: PublishedCase
 ) -> Profile:
-    value, uncertainty = values(solution, item.profile.quantity, item.at, case.problem, item.series)
+    problem = case.problem
+    exact = problem.a_h if isinstance(problem, CoatedContact) and problem.homogeneous else None
+    value, uncertainty = values(solution, item.profile.quantity, item.at, problem, item.series, exact)
     return replace(item.profile, value=value, source=source, uncertainty=uncertainty)

@@ -15,7 +15,7 @@ from verification.cases.case_file import Case, parse_case
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import Solution
 from verification.problem.either_body import on_body
-from verification.problem.quantity import QUANTITIES, SCALARS
+from verification.problem.quantity import SCALARS
 from verification.sources.source_record import Solver
 from verification.sources.source_registry import METHODS
 
@@ -48,8 +48,7 @@ def slicing_remarks(
     other = available[METHOD](half.problem, case.numerics.get(METHOD, {}) | {"estimate_uncertainty": False})
     parts = []
     for name in SCALARS:
-        of = QUANTITIES[name].value
-        value, changed = of(solution, case.problem), of(other, half.problem)
+        value, changed = (one.sample(None, name, False).value for one in (solution, other))
         parts.append(f"{name.replace('_', ' ')} by {100 * abs(changed / value - 1):.1g} %")
     x = np.linspace(-REACH, REACH, POINTS) * float(solution.contact_radius)
     pairs = zip(_sigma_xx(case, solution, x), _sigma_xx(half, other, x), strict=True)

@@ -14,7 +14,8 @@ from numpy.polynomial import chebyshev
 
 from verification.judging.invariants.companion_uncertainty import followed
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.point_answers import Points
 from verification.sources.references.layered_half_space import bending_length
 
 # Of t: samples close to the edge, where thin films bend, then evenly. REACH: of a, beside 4 bending lengths.
@@ -87,7 +88,7 @@ class Search:
                 return Tension(highest, place, None, None)
             change = followed(self.solution, lambda one: _tension(one, ENDS * one.contact_radius), before=1.0)
             wide = float(edge_uncertainty(value[at], U[at], change))
-            best = Tension(highest, place, wide, float(self.solution.uncertainty.contact_radius))
+            best = Tension(highest, place, wide, self.solution.sample(None, "contact_radius").uncertainty)
         if best.uncertainty is None or best.place_uncertainty is None:
             return best
         # Any other candidate that is as large within the uncertainty may be the place.
@@ -122,7 +123,7 @@ class Search:
         middle, half = (first + last) / 2, abs(last - first) / 2
         s = chebyshev.chebpts1(NODES)
         x = side * _radius(a, middle + half * s)
-        sigma, U = stress_with_uncertainty(self.solution, x, 0.0, 0.0, layer=0)
+        sigma, U = self.solution.sample(Points(x, layer=0), "stress")
         c = chebyshev.chebfit(s, sigma[0, 0], NODES - 1)
         # The nodes make the terms orthogonal: cut off, the sum of those left out bounds the residual.
         rest = np.cumsum(np.abs(c[::-1]))[::-1]
@@ -159,8 +160,8 @@ class Search:
 
 def around_edge(solution: Solution) -> Array:
     """Radii [m] at which ``edge_uncertainty`` needs sigma_xx with its uncertainty, (5,); the first is a."""
-    a = float(solution.contact_radius)
-    shift = 0.0 if solution.uncertainty is None else float(solution.uncertainty.contact_radius)
+    a, U = solution.sample(None, "contact_radius")
+    shift = 0.0 if U is None else U
     return np.array([a, a * (1 - BESIDE), a * (1 + BESIDE), a - shift, a + shift])
 
 

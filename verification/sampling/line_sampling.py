@@ -1,23 +1,17 @@
 """Profiles of a solution along the lines of a case."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, TypeGuard
 
 import numpy as np
 
 from verification.judging.invariants.companion_uncertainty import followed
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import (
-    BALL,
-    FLAT,
-    CoatedContact,
-    Solution,
-    relative_to_edge,
-    stress_with_uncertainty,
-)
+from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.either_body import on_body
 from verification.problem.line_profile import EDGE_LINE, Line, Profile, line_of
-from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, QUANTITIES, SCALARS, SLOPES
+from verification.problem.point_answers import BALL, EDGE, FIXED, FLAT, Points
+from verification.problem.quantity import BALL_PEAKS, IN_PLANE, PEAKS, SCALARS, SLOPES
 from verification.sampling import oblique_sampling
 from verification.sampling.largest_tension import BESIDE, ENDS, Search, around_edge, edge_uncertainty
 
@@ -26,12 +20,13 @@ NEAR_EDGE = np.array([0.0, 1e-4, 1e-3, 1e-2])
 
 
 def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> tuple[Profile, ...]:
-    """Every scalar of the contact as a profile of one point [SI]; no slope where the solution has none."""
+    """Every scalar of the contact that the solution gives as a profile of one point [SI]."""
     found = []
-    for name in (*SCALARS, *(name for name in SLOPES if getattr(solution, name, None) is not None)):
-        value = np.array([QUANTITIES[name].value(solution, problem)])
-        stated = QUANTITIES[name].uncertainty(solution, problem)
-        U = None if stated is None else np.array([stated])
+    for name in (*SCALARS, *SLOPES):
+        number, stated = solution.sample(None, name)
+        if number is None:
+            continue
+        value, U = np.array([number]), None if stated is None else np.array([stated])
         found.append(Profile(name, "contact", np.zeros(1), value, source, U))
     return tuple(found)
 
@@ -145,10 +140,9 @@ def sample(
     solution, turned = on_body(solution, line.body), -1.0 if line.body == BALL else 1.0
     x, _, z = (np.array(along) for along in line.points(position))
     x = turned * x
-    stated = solution.uncertainty is not None
     surface = line.place == "surface"
     a = float(solution.contact_radius)
-    relative = relative_to_edge(solution)
+    moving = EDGE in solution.frames
     near = np.zeros(x.shape, dtype=bool)
     if isinstance(edge, np.ndarray):
         if line.name == EDGE_LINE and (here := ends_of(solution)).shape == edge.shape:
@@ -160,43 +154,35 @@ def sample(
         near = (np.hypot(np.abs(position) - edge, z) <= BESIDE * edge) & (line.coordinate == "x")
         x[near] *= a / edge
     # of a solution that does not state its uncertainty relative to the edge, that of points on it is followed
-    at = np.flatnonzero(np.abs(position) == edge) if surface and relative is solution else np.arange(0)
+    at = np.flatnonzero(np.abs(position) == edge) if surface and not moving else np.arange(0)
     side = np.sign(x[at])
     x[at] = side * a
-    around = (side[:, None] * around_edge(solution)).ravel() if at.size and stated else np.zeros(0)
+    around = (side[:, None] * around_edge(solution)).ravel()
     search = Search(solution, problem.seen_from(line.body)) if _has_peak(problem) and surface else None
     # In one call, whose cost hardly depends on the number of points.
     parts = (x, around, np.zeros(0) if search is None else search.x)
     points = np.concatenate(parts)
-    depth = np.concatenate([z, np.zeros(points.size - z.size)])
-    sigma, U = stress_with_uncertainty(solution, points, 0.0, depth, layer=line.layer)
+    depth, beside = (np.concatenate([one, np.zeros(points.size - z.size)]) for one in (z, near))
+    places = Points(points, 0.0, depth, line.layer, frame=np.where(beside, EDGE, FIXED))
     ends = np.cumsum([part.size for part in parts])[:-1]
-    values, edges, sought = np.split(sigma, ends, axis=-1)
-    wide, edges_U, sought_U = (None,) * 3 if U is None else np.split(U, ends, axis=-1)
-    if wide is not None and edges_U is not None and around.size:
-        wide[..., at] = _at_edge(
-            solution, edges, edges_U, lambda one: one.stress(ENDS * one.contact_radius, 0.0, 0.0, layer=0)
-        )
-    if wide is not None and relative is not solution and near.any():
-        values[..., near], wide[..., near] = stress_with_uncertainty(
-            relative, x[near], 0.0, z[near], layer=line.layer
-        )
+
+    def sampled(field: str) -> tuple[Array, Array | None, Array, Array | None]:
+        """Values and uncertainties along the line, then those of the search."""
+        value, U = solution.sample(places, field)
+        here, edges, sought = np.split(value, ends, axis=-1)
+        if U is None:
+            return here, None, sought, None
+        wide, edges_U, sought_U = np.split(U, ends, axis=-1)
+        if at.size:
+            wide[..., at] = _at_edge(solution, edges, edges_U, field)
+        return here, wide, sought, sought_U
+
+    values, wide, sought, sought_U = sampled("stress")
     values[0, 2] = values[2, 0] = turned * values[0, 2]
-    found = [(name, values[component], wide, component) for name, component in IN_PLANE.items()]
-    profiles = [
-        Profile(name, line.name, position, value, source, None if U is None else U[component])
-        for name, value, U, component in found
-    ]
+    found = [(name, values[c], None if wide is None else wide[c]) for name, c in IN_PLANE.items()]
     if line.name in ("surface", EDGE_LINE):  # the pressure is that of both bodies
-        spread = np.array(solution.pressure_uncertainty(x)) if stated else None
-        if spread is not None and around.size:
-            edges, edges_U = solution.pressure(around), solution.pressure_uncertainty(around)
-            spread[at] = _at_edge(
-                solution, edges, edges_U, lambda one: one.pressure(ENDS * one.contact_radius)
-            )
-        if spread is not None and relative is not solution:
-            spread[near] = relative.pressure_uncertainty(x[near])
-        profiles.append(Profile("pressure", line.name, position, solution.pressure(x), source, spread))
+        found.append(("pressure", *sampled("pressure")[:2]))
+    profiles = [Profile(name, line.name, position, value, source, U) for name, value, U in found]
     if search is not None:
         best = search.largest(sought[0, 0], None if sought_U is None else sought_U[0, 0])
         numbers = ((best.value, best.uncertainty), (turned * best.place, best.place_uncertainty))
@@ -211,9 +197,14 @@ def _has_peak(problem: CoatedContact | None) -> TypeGuard[CoatedContact]:
     return problem is not None and problem.indenter is None
 
 
-def _at_edge(solution: Solution, value: Array, U: Array, at_own_edge: Callable[[Any], Array]) -> Array:
+def _at_edge(solution: Solution, value: Array, U: Array, field: str) -> Array:
     """Uncertainty at the solution's own edge from values at ``around_edge`` of each side, (..., 5 sides)."""
-    change = followed(solution, at_own_edge, before=1.0)
+
+    def at_ends(one: Any) -> Array:
+        found: Array = one.sample(Points(ENDS * one.contact_radius, layer=0), field, False).value
+        return found
+
+    change = followed(solution, at_ends, before=1.0)
     shape = (*value.shape[:-1], -1, 5)
     ends = None if change is None else change[..., None, :]
     return edge_uncertainty(value.reshape(shape), U.reshape(shape), ends)

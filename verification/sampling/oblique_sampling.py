@@ -3,20 +3,15 @@
 On the line "off plane" those of the semi-analytical method come from its fields on whole planes, by FFT.
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import (
-    FLAT,
-    CoatedContact,
-    NotClaimed,
-    Solution,
-    displacement_with_uncertainty,
-    stress_with_uncertainty,
-)
+from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.line_profile import Line, Profile
+from verification.problem.point_answers import FLAT, Points
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
 
 # Of the contact radius.
@@ -54,15 +49,16 @@ def sample(solution: Solution, source: str, line: Line, position: Array) -> tupl
     x, y, z = line.points(position)
     found: list[tuple[str, Array, Array | None]] = []
     on_plane = _on_plane(solution, line, x, y) if line.place == "off plane" else None
+    points = Points(x, y, z, line.layer, line.body)
     if line.place != "oblique surface":
-        sigma, U = stress_with_uncertainty(solution, x, y, z, layer=line.layer, body=line.body)
+        sigma, U = solution.sample(points, "stress")
         sigma = sigma if on_plane is None else on_plane[0]
         found += [(n, sigma[c], None if U is None else U[c]) for n, c in STRESSES.items()]
-    try:
-        u, U = displacement_with_uncertainty(solution, x, y, z, line.body)
-        u = u if on_plane is None else on_plane[1]
-    except NotClaimed:
-        u, U = np.zeros((0, position.size)), None
+    u, U = solution.sample(replace(points, layer=None), "displacement")
+    if u is None:
+        u = np.zeros((0, position.size))
+    elif on_plane is not None:
+        u = on_plane[1]
     found += [(n, u[i], None if U is None else U[i]) for i, n in enumerate(DISPLACEMENTS[: len(u)])]
     return tuple(Profile(name, line.name, position, value, source, U) for name, value, U in found)
 

@@ -1,68 +1,80 @@
 """Quantities of a solution at any points of the solid."""
 
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import (
-    CoatedContact,
-    PrescribedLoad,
-    Solution,
-    stress_with_uncertainty,
-)
-from verification.problem.evaluation_points import Points
+from verification.problem.coated_contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.evaluation_points import TablePoints
 from verification.problem.loading_curve import LoadingCurve
+from verification.problem.point_answers import EDGE, FIXED, Points
 from verification.problem.quantity import EXTREMES, QUANTITIES
+from verification.sampling.largest_tension import BESIDE
 from verification.sources.loading_solution import Loading
 
 
 def values(
     solution: Solution | Loading,
     quantity: str,
-    at: Points,
+    at: TablePoints,
     problem: CoatedContact | PrescribedLoad | LoadingCurve,
     series: tuple[float, ...] = (),
+    edge: float | None = None,
 ) -> tuple[Array, Array | None]:
     """``quantity`` [SI, tension positive] of a solution at points, with its uncertainty if one is stated.
 
         eps_ij = [(1 + nu) sigma_ij - nu sigma_kk delta_ij] / E
 
-    A displacement is as uncertain as the one at the origin, where the solution's approach is taken, unless
-    the solution says more. series : coefficients, where the quantity asks for some.
+    series : coefficients, where the quantity asks for some.   edge : exact contact radius [m], beside which
+    points are taken at the same share of the way to the solution's own edge; None for none.
     """
     if isinstance(problem, LoadingCurve):
-        return cast(Loading, solution).quantity(quantity, at.along, series)
+        of_curve = replace(cast(Loading, solution), series=series).sample(Points(at.along), quantity)
+        return of_curve.value, of_curve.uncertainty
     assert not isinstance(solution, Loading)
-    stated = solution.uncertainty
     if quantity in EXTREMES:
-        top, wide = _extreme(solution, quantity)
-        return np.full(at.x.shape, top), None if wide is None else np.full(at.x.shape, wide)
+        return _everywhere(at, *_extreme(solution, quantity))
     record = QUANTITIES[quantity]
     if record.kind == "scalar":
-        wide = record.uncertainty(solution, problem)
-        value = np.full(at.x.shape, record.value(solution, problem))
-        return value, None if wide is None else np.full(at.x.shape, wide)
+        return _everywhere(at, *solution.sample(None, quantity))
     if quantity == "pressure":
-        p = solution.pressure(at.x, at.y)
-        return p, None if stated is None else solution.pressure_uncertainty(at.x, at.y)
+        p, U = solution.sample(_beside_edge(solution, at, edge), "pressure")
+        return p, U
     if record.kind == "displacement":
         i = "xyz".index(quantity[-1])
-        u = solution.displacement(at.x, at.y, at.z)[i]
-        if hasattr(solution, "displacement_uncertainty"):
-            return u, solution.displacement_uncertainty(at.x, at.y, at.z)[i]
-        return u, None if stated is None else np.full(u.shape, float(stated.approach))
-    value, uncertainty = np.empty(at.x.shape), np.empty(at.x.shape)
+        u, U = solution.sample(Points(at.x, at.y, at.z), "displacement")
+        return u[i], None if U is None else U[i]
+    value, uncertainty, stated = np.empty(at.x.shape), np.empty(at.x.shape), True
     moduli = [(E, nu) for E, nu, _ in problem.coatings] + [problem.substrate]
     for layer in sorted(set(at.layer.tolist())):
-        here = at.layer == layer
-        place = (at.x[here], at.y[here], at.z[here])
+        here = np.flatnonzero(at.layer == layer)
         weight = _weights(quantity, *moduli[layer])
-        sigma, U = stress_with_uncertainty(solution, *place, layer=layer)
+        places = replace(_beside_edge(solution, at.part(here.tolist()), edge), layer=layer)
+        sigma, U = solution.sample(places, "stress")
         value[here] = np.einsum("ij,ij...->...", weight, sigma)
-        if U is not None:
+        stated = U is not None
+        if stated:
             uncertainty[here] = np.einsum("ij,ij...->...", np.abs(weight), U)
-    return value, None if stated is None else uncertainty
+    return value, uncertainty if stated else None
+
+
+def _everywhere(at: TablePoints, value: float, U: float | None) -> tuple[Array, Array | None]:
+    return np.full(at.x.shape, value), None if U is None else np.full(at.x.shape, U)
+
+
+def _beside_edge(solution: Solution, at: TablePoints, edge: float | None) -> Points:
+    """The points, those beside the exact ``edge`` [m] at the same share of the way to the solution's own.
+
+    At a fixed x next to the edge an error da of the radius changes the pressure by q sqrt(2 da/a), whatever
+    the method; the radius is a quantity of its own.
+    """
+    if edge is None:
+        return Points(at.x, at.y, at.z)
+    near = np.hypot(np.hypot(at.x, at.y) - edge, at.z) <= BESIDE * edge
+    ratio = np.where(near, float(solution.contact_radius) / edge, 1.0)
+    return Points(at.x * ratio, at.y * ratio, at.z, frame=np.where(near, EDGE, FIXED))
 
 
 def _extreme(solution: Solution, quantity: str) -> tuple[float, float | None]:
@@ -74,10 +86,8 @@ def _extreme(solution: Solution, quantity: str) -> tuple[float, float | None]:
     low, here, high = tau[top - 1 : top + 2].tolist()
     share = 2.0 if quantity == "von_mises_max" else 1.0
     value = share * (here + (high - low) ** 2 / (8 * (2 * here - low - high)))
-    if solution.uncertainty is None:
-        return value, None
-    U = solution.stress_uncertainty(0.0, 0.0, z[[top]])
-    return value, share * float(U[2, 2, 0] + U[0, 0, 0]) / 2
+    U = solution.sample(Points(0.0, 0.0, z[[top]]), "stress").uncertainty
+    return value, None if U is None else share * float(U[2, 2, 0] + U[0, 0, 0]) / 2
 
 
 def _weights(quantity: str, E: float, nu: float) -> Array:

@@ -11,7 +11,8 @@ import numpy as np
 
 from verification.judging.invariant_verdict import Invariant, decide
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.point_answers import Points
 from verification.problem.quantity import IN_PLANE
 from verification.sources.source_registry import METHODS
 
@@ -71,8 +72,8 @@ def plane_invariants(
         gap, bound = [], []
         for k, (z, drawn) in enumerate(zip(plane.depths, layers, strict=True)):
             level = z.size // 2
-            at = plane.x[columns], 0.0, np.full(len(columns), z[level])
-            sigma, U = stress_with_uncertainty(solutions[name], *at, layer=k)
+            at = Points(plane.x[columns], 0.0, np.full(len(columns), z[level]), k)
+            sigma, U = solutions[name].sample(at, "stress")
             for n, c in enumerate(IN_PLANE.values()):
                 gap.append((drawn[n, level, columns] - sigma[c]) / problem.p_h)
                 bound.append(np.full(len(columns), np.inf) if U is None else U[c] / problem.p_h)

@@ -2,21 +2,18 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
-from operator import attrgetter
-from types import SimpleNamespace
-from typing import Any, TypeVar, cast
+from functools import cached_property
+from typing import Any, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from verification.problem.array_types import Array, Coatings
-from verification.problem.coated_contact import CoatedContact, PrescribedLoad, Solution
-from verification.problem.quantity import QUANTITIES, SCALARS, SLOPES
+from verification.problem.coated_contact import CoatedContact, PrescribedLoad, Solution, Uncertainty
+from verification.problem.point_answers import UNSUPPORTED, Answer, Points, Sampled
+from verification.problem.quantity import SCALARS
 
 Problem = TypeVar("Problem", bound=CoatedContact | PrescribedLoad)
 Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
-FIELDS = ("pressure", "stress", "displacement")
 STEP = 1e-3  # of Poisson's ratio, at most
 NEAR = 1e-4  # of 1/2: mean stresses of elements lose digits as 1/(1 - 2 nu)
 # (a/h)^2 times the step: a bonded film of thickness h deforms by its compressibility, over that by shear, as
@@ -37,7 +34,7 @@ def extrapolated(problem: CoatedContact | PrescribedLoad, solve: Solver) -> Solu
     step = min(STEP, CONFINED * (_thinnest(problem) / float(first.contact_radius)) ** 2)
     near = first if step == STEP else solve(short_of_limit(problem, 1, step))
     further, third = (solve(short_of_limit(problem, t, step)) for t in (2, 3))
-    return cast(Solution, _Extrapolated(near, further, third))
+    return Extrapolated(near, further, third)
 
 
 def short_of_limit(problem: Problem, t: int, step: float = STEP) -> Problem:
@@ -65,7 +62,7 @@ def _thinnest(problem: CoatedContact | PrescribedLoad) -> float:
 
 
 @dataclass(frozen=True, eq=False)
-class _Extrapolated:
+class Extrapolated(Sampled):
     """3 f(1) - 3 f(2) + f(3), uncertain by 3 U(1) + 3 U(2) + U(3) + |second difference|, for each f.
 
     Fields are extrapolated at the same x/a, of which they are smooth functions at the edge too; that of the
@@ -76,66 +73,55 @@ class _Extrapolated:
     further: Solution
     third: Solution
 
-    def __getattr__(self, name: str) -> Any:
-        if name in SCALARS + SLOPES:
-            return self._parabola(attrgetter(name))
-        if name in FIELDS:
-            return partial(self._field, name)
-        if (field := name.removesuffix("_uncertainty")) in FIELDS:
-            return partial(self._field_uncertainty, field)
-        if name in ("diagnostics", "surface_nodes", "singular_radii"):
-            return getattr(self.near, name)
-        raise AttributeError(name)
+    def sample(self, points: Points | None, quantity: str, uncertainty: bool = True) -> Answer:
+        """Value and uncertainty in the limit; no uncertainty where the solutions state none."""
+        three, a = (self.near, self.further, self.third), 1.0 if points is None else self.contact_radius
+        places = [_scaled(points, float(one.contact_radius) / a) for one in three]
+        (f, U), (g, V), (h, W) = (
+            one.sample(at, quantity, uncertainty) for one, at in zip(three, places, strict=True)
+        )
+        if f is None:
+            return UNSUPPORTED
+        value = 3 * f - 3 * g + h
+        if U is None or V is None or W is None:
+            return Answer(value)
+        U = 3 * U + 3 * V + W + np.abs(f - 2 * g + h)
+        if points is None:
+            return Answer(value, U)
+        radii = [float(one.contact_radius) for one in three]
+        moved = abs(radii[0] - 2 * radii[1] + radii[2]) / a
+        beside = (self.near.sample(_scaled(places[0], k), quantity, False) for k in (1 - moved, 1 + moved))
+        return Answer(value, U + np.maximum(*(np.abs(one.value - f) for one in beside)))
+
+    @property
+    def diagnostics(self) -> Any:
+        """Those of the nearest solution."""
+        return self.near.diagnostics
+
+    @property
+    def surface_nodes(self) -> Array:
+        """Those of the nearest solution."""
+        return self.near.surface_nodes
 
     @cached_property
-    def uncertainty(self) -> Any:
+    def uncertainty(self) -> Uncertainty | None:
         """Uncertainty of the scalars; None where the solutions state none."""
-        if any(one.uncertainty is None for one in self._three):
-            return None
         rows, total = [], {}
-        for name in (name for name in SCALARS if not QUANTITIES[name].derived):
-            own = self._summed(attrgetter(f"uncertainty.{name}"))
-            bend = abs(self._bend(attrgetter(name)))
+        for name in SCALARS:
+            values, stated = zip(
+                *(one.sample(None, name) for one in (self.near, self.further, self.third)), strict=True
+            )
+            if None in stated:
+                return None
+            own, bend = 3 * stated[0] + 3 * stated[1] + stated[2], abs(values[0] - 2 * values[1] + values[2])
             rows += [(name, "the three solutions", own), (name, "limit", bend)]
             total[name] = own + bend
-        return SimpleNamespace(**total, budget=tuple(rows))
+        return Uncertainty(**total, budget=tuple(rows))
 
-    @property
-    def stiffness_uncertainty(self) -> float | None:
-        if self.uncertainty is None:
-            return None
-        own = self._summed(lambda one: one.stiffness_uncertainty or 0.0)
-        return float(own + abs(self._bend(attrgetter("stiffness"))))
 
-    @property
-    def _three(self) -> tuple[Solution, Solution, Solution]:
-        return self.near, self.further, self.third
-
-    def _at(self, one: Solution, name: str, x: ArrayLike, y: ArrayLike = 0.0, *z: Any, **of: Any) -> Array:
-        """``name`` of one solution where x/a is the same."""
-        ratio = float(one.contact_radius) / float(self.contact_radius)
-        found: Array = getattr(one, name)(np.asarray(x) * ratio, np.asarray(y) * ratio, *z, **of)
-        return found
-
-    def _field(self, name: str, *at: Any, **of: Any) -> Array:
-        return np.asarray(self._parabola(lambda one: self._at(one, name, *at, **of)))
-
-    def _field_uncertainty(self, name: str, x: ArrayLike, y: ArrayLike = 0.0, *z: Any, **of: Any) -> Array:
-        own = self._summed(lambda one: self._at(one, f"{name}_uncertainty", x, y, *z, **of))
-        bend = np.abs(self._bend(lambda one: self._at(one, name, x, y, *z, **of)))
-        moved = abs(self._bend(attrgetter("contact_radius"))) / float(self.contact_radius)
-        f = self._at(self.near, name, x, y, *z, **of)
-        shifts = [
-            np.abs(self._at(self.near, name, np.asarray(x) * k, np.asarray(y) * k, *z, **of) - f)
-            for k in (1 - moved, 1 + moved)
-        ]
-        return np.asarray(own + bend + np.maximum(*shifts))
-
-    def _parabola(self, of: Callable[[Solution], Any]) -> Any:
-        return 3 * of(self.near) - 3 * of(self.further) + of(self.third)
-
-    def _summed(self, of: Callable[[Solution], Any]) -> Any:
-        return 3 * of(self.near) + 3 * of(self.further) + of(self.third)
-
-    def _bend(self, of: Callable[[Solution], Any]) -> Any:
-        return of(self.near) - 2 * of(self.further) + of(self.third)
+def _scaled(points: Points | None, ratio: float) -> Points | None:
+    """Points at x and y times ``ratio``."""
+    if points is None:
+        return None
+    x, y = np.asarray(points.x) * ratio, np.asarray(points.y) * ratio
+    return Points(x, y, points.z, points.layer, points.body, points.frame)

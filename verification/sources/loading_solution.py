@@ -15,6 +15,7 @@ from scipy.optimize import brentq
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.loading_curve import LoadingCurve
+from verification.problem.point_answers import Answer, Points
 from verification.sources.limit_extrapolation import short_of_limit
 from verification.sources.references.flat_punch import Pressed, pressed
 
@@ -23,17 +24,19 @@ from verification.sources.references.flat_punch import Pressed, pressed
 class Loading:
     """States (W, delta, a, S) near the points, columns of ``state``, with their ``uncertainties`` [SI].
 
-    diagnostics : number of contacts solved for the curve.
+    diagnostics : number of contacts solved for the curve.   series : coefficients of the formulas that
+    ``series_over_load`` and ``series_over_kappa`` judge.
     """
 
     problem: LoadingCurve
     state: Array
     uncertainties: Array
     diagnostics: dict[str, int]
+    series: tuple[float, ...] = ()
     uncertainty: None = None
 
-    def quantity(self, name: str, at: Array, series: tuple[float, ...] = ()) -> tuple[Array, Array]:
-        """One of ``CURVES`` with its uncertainty [SI] where the control equals ``at``, points of the problem.
+    def sample(self, points: Points, quantity: str, uncertainty: bool = True) -> Answer:
+        """One of ``CURVES`` with its uncertainty [SI] where the control equals x, points of the problem.
 
         series_over_load  : (4/3) E1* sqrt(R) delta^1.5 (1 + c1 X + c2 X^2 + ..) / W,  X = sqrt(R delta)/h
         series_over_kappa : (1 + c1 X + c2 X^2 + ..) / kappa,  X = a/h
@@ -41,13 +44,13 @@ class Loading:
         A state misses its point by the error of the load estimated for it. The value is moved to the point
         along the curve through the neighbouring states; the shift is part of the uncertainty.
         """
-        value = self._of(name, self.state, series)
-        uncertainty = np.zeros(value.shape)
+        value = self._of(quantity, self.state)
+        U = np.zeros(value.shape)
         for j in range(4):
             moved = self.state.copy()
             moved[:, j] *= 1 + 1e-6
-            slope = (self._of(name, moved, series) / value - 1) / 1e-6
-            uncertainty += np.abs(slope * self.uncertainties[:, j] / self.state[:, j])
+            slope = (self._of(quantity, moved) / value - 1) / 1e-6
+            U += np.abs(slope * self.uncertainties[:, j] / self.state[:, j])
         column = 2 if self.problem.control == "contact_radius" else 1
         control = self.state[:, column]
         miss = np.log(np.array(self.problem.at) / control)
@@ -55,21 +58,21 @@ class Loading:
         if control.size > 1:
             order = np.argsort(control)
             power[order] = np.gradient(np.log(value[order]), np.log(control[order]))
-        uncertainty += np.abs(power) * (self.uncertainties[:, column] / control + np.abs(miss))
+        U += np.abs(power) * (self.uncertainties[:, column] / control + np.abs(miss))
         value = value * np.exp(power * miss)
-        rows = [self.problem.at.index(float(x)) for x in at]
-        return value[rows], (uncertainty * value)[rows]
+        rows = [self.problem.at.index(float(x)) for x in np.ravel(points.x)]
+        return Answer(value[rows], (U * value)[rows] if uncertainty else None)
 
-    def _of(self, name: str, state: Array, series: tuple[float, ...]) -> Array:
+    def _of(self, name: str, state: Array) -> Array:
         W, delta, a, S = state.T
         p = self.problem
         h = p.coatings[0][2] if p.coatings else np.inf
         kappa = S / (2 * a * p.E_star)
         if name == "series_over_load":
             hertz = 4 / 3 * p.E_star * np.sqrt(p.radius) * delta**1.5
-            return hertz * _series(np.sqrt(p.radius * delta) / h, series) / W
+            return hertz * _series(np.sqrt(p.radius * delta) / h, self.series) / W
         if name == "series_over_kappa":
-            return _series(a / h, series) / kappa
+            return _series(a / h, self.series) / kappa
         return {"load": W, "approach": delta, "contact_radius": a, "kappa": kappa}[name]
 
 
@@ -98,9 +101,9 @@ def loading(
         nonlocal count
         count += 1
         one = solve(contact)
-        found = [contact.load, one.approach, one.contact_radius, one.stiffness]
-        U = one.uncertainty
-        return np.array(found), np.array([0.0, U.approach, U.contact_radius, one.stiffness_uncertainty])
+        found = [one.sample(None, name) for name in ("approach", "contact_radius", "stiffness")]
+        value, U = zip((contact.load, 0.0), *found, strict=True)
+        return np.array(value), np.array(U)
 
     for at in problem.at:
         contact = problem.contact(pressed_at(problem, at)[1].load / problem.radius)

@@ -21,7 +21,8 @@ from scipy.interpolate import make_interp_spline
 
 from verification.judging.invariants.companion_uncertainty import followed
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import Solution, stress_with_uncertainty
+from verification.problem.coated_contact import Solution
+from verification.problem.point_answers import Points
 from verification.problem.quantity import IN_PLANE
 from verification.sampling.largest_tension import around_edge, edge_uncertainty
 
@@ -52,10 +53,7 @@ class Parts:
         The uncertainty is the solution's own, NaN where it has none.
         """
         x = np.stack([r, -r]) if self.friction else r[None]
-        if self.stated:
-            full, U = stress_with_uncertainty(self.solution, x, 0.0, z, layer=layer)
-        else:
-            full, U = self.solution.stress(x, 0.0, z, layer=layer), None
+        full, U = self.solution.sample(Points(x, 0.0, z, layer), "stress", self.stated)
         sigma, bound = in_plane(full), in_plane(np.full_like(full, np.nan) if U is None else U)
         if not self.friction:
             return sigma[:, 0], np.zeros_like(sigma[:, 0]), np.stack([bound[:, 0]] * 2)

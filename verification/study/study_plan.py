@@ -25,7 +25,8 @@ from verification.cases.solid_schema import BallEntry, Coating, Limited, Materia
 from verification.cases.toml_file import NO_SOURCE, CaseError, Positive, Strict, Text, read_bounded, read_toml
 from verification.cases.unit_numbers import Metres, Newtons, Units, units_of
 from verification.problem.array_types import Ball, Coatings
-from verification.problem.coated_contact import FLAT, CoatedContact
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.point_answers import FLAT
 from verification.running.json_records import plain
 from verification.sources.load_of_approach import own_radius
 from verification.sources.source_registry import METHODS

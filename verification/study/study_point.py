@@ -14,7 +14,6 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from verification.problem.coated_contact import CoatedContact
-from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import message_of
 from verification.running.provenance import versions
 from verification.running.slicing import sliced
@@ -146,11 +145,10 @@ def _rows(
 ) -> list[dict[str, Any]]:
     common: dict[str, Any] = {}
     for name, scale in SCALARS.items():
-        value = QUANTITIES[name].value(solution, problem)
+        value, spread = solution.sample(None, name)
         if not 0 < value < float("inf"):
             raise ValueError(f"{name} = {value:g}; the solution is no contact")
         common |= {name: value, f"{name}_over_{scale}": value / getattr(problem, scale)}
-        spread = QUANTITIES[name].uncertainty(solution, problem)
         if spread is not None:
             common[f"{name}_uncertainty"] = spread
     rows = []

@@ -10,6 +10,7 @@ u_input and the curves between are those of the exact integral equation, which s
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -37,7 +38,7 @@ def exact_modulus(a: float, solid: Solid) -> float:
 
 
 def method_modulus(
-    a: float, solid: Solid, solve: Callable[..., object], **numerics: object
+    a: float, solid: Solid, solve: Callable[..., Any], **numerics: object
 ) -> tuple[float, float]:
     """S/(2a) [Pa] of a sphere's contact by the ``solve`` of a method, and the method's uncertainty of it.
 
@@ -47,8 +48,8 @@ def method_modulus(
     radius = ROUND * a
     load = pressed(a, *solid).load / radius
     found = solve(radius=radius, load=load, coatings=solid[0], substrate=solid[1], **numerics)
-    stiffness, width = found.stiffness, 2 * found.contact_radius  # type: ignore[attr-defined]
-    return stiffness / width, (found.stiffness_uncertainty or 0.0) / width  # type: ignore[attr-defined]
+    (stiffness, U), width = found.sample(None, "stiffness"), 2 * found.contact_radius
+    return stiffness / width, (U or 0.0) / width
 
 
 @dataclass(frozen=True)

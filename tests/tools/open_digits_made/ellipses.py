@@ -23,6 +23,7 @@ from scipy.special import ellipeinc, ellipkinc
 from open_digits_made.row import DEPTH, INSIDE, SCALARS, Row, places
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact
+from verification.problem.point_answers import Points
 from verification.sources.references.hertz_ellipse import PressedEllipsoid, pressed_ellipsoid
 
 ROUNDING = 1e-12  # relative, of the closed forms
@@ -72,12 +73,13 @@ def _row(quantity: str, x: Array, z: Array, value: Array) -> Row:
 def by_method(solution: Any, row: Row) -> tuple[Array, Array] | None:
     """The value of a method with its uncertainty at the points of a row; None of the half-axes."""
     if row.quantity in SCALARS:
-        both = getattr(solution, row.quantity), getattr(solution.uncertainty, row.quantity)
-        return np.array([both[0]]), np.array([both[1]])
+        value, U = solution.sample(None, row.quantity)
+        return np.array([value]), np.array([U])
     if row.quantity == "pressure":
-        return solution.pressure(row.x), solution.pressure_uncertainty(row.x)
+        value, U = solution.sample(Points(row.x), "pressure")
+        return value, U
     if row.quantity not in AXIS:
         return None
     k = AXIS.index(row.quantity)
-    sigma, U = solution.stress_with_uncertainty(row.x, 0.0, row.z)
+    sigma, U = solution.sample(Points(row.x, 0.0, row.z), "stress")
     return sigma[k, k], U[k, k]

@@ -8,7 +8,8 @@ import numpy as np
 from open_digits_made import ellipses
 from open_digits_made.row import DEPTH, INSIDE, SCALARS, Row, places
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, PrescribedLoad, stress_with_uncertainty
+from verification.problem.coated_contact import CoatedContact, PrescribedLoad
+from verification.problem.point_answers import Points
 from verification.problem.quantity import IN_PLANE
 from verification.sources.exact_sources import solve_exactly
 
@@ -30,13 +31,12 @@ def rows_of(solution: Any, problem: Problem, a: float) -> Iterator[Row]:
     """Every value of a ``solution``; the points are multiples of ``a`` [m], rounded to four digits."""
     zero = np.zeros(1)
     sliding = problem.friction > 0
-    stated = solution.uncertainty
     for name in SCALARS if isinstance(problem, CoatedContact) else ("approach",):
-        value, U = np.array([getattr(solution, name)]), np.array([getattr(stated, name)])
+        value, U = (np.array([number]) for number in solution.sample(None, name))
         yield Row(name, zero, zero, 0, value, U)
     if isinstance(problem, CoatedContact):
         x = places(INSIDE, a)
-        yield Row("pressure", x, 0 * x, 0, solution.pressure(x), solution.pressure_uncertainty(x))
+        yield Row("pressure", x, 0 * x, 0, *solution.sample(Points(x), "pressure"))
     x = places(SURFACE, a, sliding=sliding)
     yield from _stresses(solution, x, 0 * x, 0, ("sigma_xx", "sigma_yy"))
     z = places(DEPTH, a)
@@ -53,7 +53,7 @@ def rows_of(solution: Any, problem: Problem, a: float) -> Iterator[Row]:
 
 
 def _stresses(solution: Any, x: Array, z: Array, layer: int, names: tuple[str, ...]) -> Iterator[Row]:
-    sigma, U = stress_with_uncertainty(solution, x, 0.0, z, layer=layer)
+    sigma, U = solution.sample(Points(x, 0.0, z, layer), "stress")
     assert U is not None
     for name in names:
         yield Row(name, x, z, layer, sigma[IN_PLANE[name]], U[IN_PLANE[name]])

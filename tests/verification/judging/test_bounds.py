@@ -9,7 +9,8 @@ import pytest
 from verification.judging.invariants.bonded_deformation import displacement_bound, hooke
 from verification.judging.invariants.central_differences import Stencil
 from verification.judging.verdict import Outcome
-from verification.problem.coated_contact import CoatedContact, Uncertainty
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.point_answers import ByFunctions
 
 E, NU, A, S = 210e9, 0.3, 1e-4, 1e6
 BARE = CoatedContact(10e-3, 20.0, (), (E, NU))
@@ -18,29 +19,29 @@ STENCIL = Stencil(np.array([[0.1], [0.2], [0.5]]) * A, np.full((3, 1), 0.01 * A)
 
 
 @dataclass(frozen=True)
-class Uncertain:
+class Uncertain(ByFunctions):
     """No displacement, a stress of ``ratio`` times its uncertainty, a pressure uncertain on a ring."""
 
     ratio: float = 1.0
     ring: tuple[float, float] = (0.0, 1.0)
     contact_radius: ClassVar[float] = A
     approach: ClassVar[float] = 1e-6
-    uncertainty: ClassVar[Uncertainty] = Uncertainty(0.0, 0.0, 0.0)
+
+    def pressure(self, x, y):
+        return np.zeros(np.shape(x))
 
     def displacement(self, x, y, z):
         return np.zeros((3, *np.shape(x)))
 
     def stress(self, x, y, z, layer=None):
-        return self.ratio * self.stress_uncertainty(x, y, z)
+        sigma = np.zeros((3, 3, *np.shape(x)))
+        sigma[1, 1] = sigma[2, 2] = self.ratio * S
+        return sigma
 
-    def stress_uncertainty(self, x, y, z, layer=None):
-        U = np.zeros((3, 3, *np.shape(x)))
-        U[1, 1] = U[2, 2] = S
-        return U
-
-    def pressure_uncertainty(self, x, y=0.0):
-        r = np.hypot(x, y) / A
-        return np.where((r > self.ring[0]) & (r < self.ring[1]), S, 0.0)
+    def error(self, points, quantity, value):
+        r = 0.0 if points is None else np.hypot(points.x, points.y) / A
+        ring = np.where((r > self.ring[0]) & (r < self.ring[1]), S, 0.0)
+        return {"stress": value / self.ratio, "pressure": ring}.get(quantity, 0.0)
 
 
 @pytest.mark.parametrize(("ratio", "outcome"), [(1.9, Outcome.AGREES), (2.1, Outcome.DISAGREES)])

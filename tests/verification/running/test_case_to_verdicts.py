@@ -7,10 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from altered_source import Altered
 from case_texts import case_text
 
 from verification.cases.case_file import parse_case, read_case, shaped_cases
 from verification.judging.verdict import Outcome
+from verification.problem.point_answers import Answer, Sampled
 from verification.problem.quantity import SCALARS
 from verification.running.case_result import from_json, to_json
 from verification.running.contact_run import judge_case, run, solve_case
@@ -25,26 +27,21 @@ def exact(problem, _):
     return solved(problem)
 
 
-class Remembered:
-    """A solution that computes each stress once, its uncertainty too."""
+class Remembered(Sampled):
+    """A solution that computes each answer once."""
 
     def __init__(self, solution):
-        self._solution, self._known = solution, {}
+        self.solution, self.known, self.coarser = solution, {}, solution.coarser
+        self.uncertainty, self.diagnostics = solution.uncertainty, solution.diagnostics
+        self.surface_nodes = solution.surface_nodes
 
-    def __getattr__(self, name):
-        return getattr(self._solution, name)
-
-    def _once(self, name, x, y, z, layer):
-        key = (name, layer, *((np.shape(v), np.asarray(v, dtype=float).tobytes()) for v in (x, y, z)))
-        if key not in self._known:
-            self._known[key] = getattr(self._solution, name)(x, y, z, layer)
-        return self._known[key].copy()
-
-    def stress(self, x, y, z, layer=None):
-        return self._once("stress", x, y, z, layer)
-
-    def stress_uncertainty(self, x, y, z, layer=None):
-        return self._once("stress_uncertainty", x, y, z, layer)
+    def sample(self, points, quantity, uncertainty=True):
+        places = () if points is None else (points.x, points.y, points.z)
+        at = ((np.shape(v), np.asarray(v, dtype=float).tobytes()) for v in places)
+        key = (quantity, uncertainty, None if points is None else points.layer, *at)
+        if key not in self.known:
+            self.known[key] = self.solution.sample(points, quantity, uncertainty)
+        return Answer(*(v.copy() if isinstance(v, np.ndarray) else v for v in self.known[key]))
 
 
 @functools.cache
@@ -99,28 +96,16 @@ def test_source_that_raises_is_no_result_with_its_sentence_and_the_others_go_on(
     assert {v.outcome for v in others} == {Outcome.AGREES}
 
 
-class Changed:
-    """A solution with some answers replaced."""
-
-    def __init__(self, solution, **answers):
-        self._solution, self._answers = solution, answers
-
-    def __getattr__(self, name):
-        return self._answers[name] if name in self._answers else getattr(self._solution, name)
-
-
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 @pytest.mark.parametrize("name", ["stress", "pressure", "stress_uncertainty", "pressure_uncertainty"])
 def test_values_that_are_not_finite_never_agree(case, name, bad):
     def broken(problem, numerics):
-        s = exact(problem, numerics)
-
-        def answer(*arguments, **keywords):
-            values = getattr(s, name)(*arguments, **keywords).copy()
+        def answer(field, *place):
+            values = field(*place)
             values[..., 3] = bad
             return values
 
-        return Changed(s, **{name: answer})
+        return Altered(exact(problem, numerics), **{name: answer})
 
     result = judged(case, sources(fem_reference=broken))
     touched = [

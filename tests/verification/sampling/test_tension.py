@@ -1,7 +1,6 @@
 """The largest tension of the surface: closed forms at the edge, smooth maxima beside it, no zone left out."""
 
 from itertools import chain
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,8 +8,8 @@ from synthetic_results import contact
 
 from verification.cases.case_file import read_case, shipped_cases
 from verification.judging.standard_claims import standard_claims
-from verification.problem.coated_contact import stress_with_uncertainty
 from verification.problem.line_profile import lines_of
+from verification.problem.point_answers import ByFunctions, Points
 from verification.problem.quantity import PEAKS
 from verification.sampling import largest_tension
 from verification.sampling.largest_tension import Search, Tension, edge_uncertainty
@@ -23,7 +22,7 @@ STEEL, NU = 210e9, 0.3
 
 def largest(solution, problem) -> Tension:
     search = Search(solution, problem)
-    sigma, U = stress_with_uncertainty(solution, search.x, 0.0, np.zeros(search.x.size), layer=0)
+    sigma, U = solution.sample(Points(search.x, layer=0), "stress")
     return search.largest(sigma[0, 0], None if U is None else U[0, 0])
 
 
@@ -121,11 +120,10 @@ def test_the_uncertainty_at_the_edge_is_beside_it_plus_what_no_change_of_the_rad
     assert edge_uncertainty(value, U, np.array(0.02)) == pytest.approx(0.14)
 
 
-class Waving:
+class Waving(ByFunctions):
     """A maximum of sigma_xx at x = -2 a, with waves on it that the companion has elsewhere."""
 
     contact_radius, peak_pressure = 1e-4, 1e9
-    uncertainty = SimpleNamespace(contact_radius=1e-12)
 
     def __init__(self, phase=0.0, coarser=None):
         self.phase, self.coarser = phase, coarser
@@ -136,10 +134,8 @@ class Waving:
         sigma[0, 0] = 1e9 * (np.exp(-(((r - 2) / 0.4) ** 2)) + 1e-5 * np.cos(20 * r + self.phase))
         return sigma
 
-    def stress_uncertainty(self, x, y, z, layer=None):
-        U = np.zeros((3, 3, *np.shape(x)))
-        U[0, 0] = 2e6
-        return U
+    def error(self, points, quantity, value):
+        return np.full_like(value, 2e6) if quantity == "stress" else 1e-12
 
 
 def test_place_of_a_smooth_maximum_is_the_least_uncertain_one_with_its_distance_from_the_next(monkeypatch):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from verification.problem.point_answers import Points
 from verification.sources.references import integral_equation
 from verification.sources.references.hamilton import Hamilton
 from verification.sources.references.hertz import Hertz
@@ -70,6 +71,6 @@ def test_displacement_passes_an_interface_and_states_its_uncertainty():
     for depth in (0.5 * A, 0.8 * A):
         above, below = (coated.displacement(x, 0.4 * A, depth * (1 + s)) for s in (-1e-7, 1e-7))
         assert np.abs(above - below).max() < 1e-6 * coated.approach
-    U = coated.displacement_uncertainty(x, 0.4 * A, 0.0)
+    U = coated.sample(Points(x, 0.4 * A, 0.0), "displacement").uncertainty
     assert U.shape == (3, 3)
     assert 0 < U.max() < 1e-8 * coated.approach

@@ -8,8 +8,9 @@ import pytest
 
 import fem_reference
 import semianalytic
-from verification.problem.coated_contact import BALL, FLAT, CoatedContact, keywords
+from verification.problem.coated_contact import CoatedContact, keywords
 from verification.problem.either_body import on_body
+from verification.problem.point_answers import BALL, FLAT
 from verification.sources.references import integral_equation
 from verification.sources.references.hamilton import Hamilton
 from verification.sources.references.hertz import Hertz

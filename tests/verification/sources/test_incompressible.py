@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import fem_reference
-from verification.problem.coated_contact import CoatedContact, stress_with_uncertainty
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.point_answers import Points
 from verification.problem.quantity import QUANTITIES
 from verification.sources.exact_sources import solve_exactly
 from verification.sources.method_sources import solve_elements, solve_semianalytic
@@ -27,10 +28,10 @@ def test_a_confined_incompressible_film_is_the_same_in_every_source(nu):
         for name in SCALARS:
             U = getattr(found.uncertainty, name)
             assert abs(getattr(found, name) - getattr(exact, name)) <= U <= 1e-4 * getattr(exact, name), name
-        value, U = stress_with_uncertainty(found, 0.5 * a, 0.0, z)
+        value, U = found.sample(Points(0.5 * a, 0.0, z), "stress")
         assert (np.abs(value - exact.stress(0.5 * a, 0.0, z)) <= U).all()
         error = np.abs(found.pressure(edge) - exact.pressure(edge))
-        assert (error <= found.pressure_uncertainty(edge)).all()
+        assert (error <= found.sample(Points(edge), "pressure").uncertainty).all()
         assert error.max() <= 0.01 * exact.peak_pressure
     # what it costs to take 0.49 for it
     assert solve_exactly(film(0.49)).approach > 1.4 * exact.approach

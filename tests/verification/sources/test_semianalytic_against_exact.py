@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import semianalytic
+from verification.problem.point_answers import Points
 from verification.sources.references import integral_equation
 
 R, W = 10e-3, 20.0
@@ -40,7 +41,10 @@ def test_default_contact_meets_the_exact_one(coatings):
         assert abs(getattr(ours, name) - getattr(exact, name)) <= U
     x = ours.surface_nodes
     error = np.abs(ours.pressure(x) - exact.pressure(x))
-    assert np.all(error <= ours.pressure_uncertainty(x) + exact.pressure_uncertainty(x))
+    assert np.all(
+        error
+        <= ours.sample(Points(x), "pressure").uncertainty + exact.sample(Points(x), "pressure").uncertainty
+    )
     away = np.abs(np.abs(x) - exact.contact_radius) > 2 * ours.diagnostics.patch_size
     assert error[away].max() <= 1e-4 * exact.peak_pressure
 
@@ -68,7 +72,7 @@ def test_stress_meets_the_exact_one(coatings, off_plane, friction):
     interfaces = np.cumsum([h for _, _, h in coatings])
     depths += [(h, upper + side) for upper, h in enumerate(interfaces) for side in (0, 1)]
     for z, layer in depths:
-        found, bound = ours.stress_with_uncertainty(x, y, z, layer)
+        found, bound = ours.sample(Points(x, y, z, layer), "stress")
         expected = exact.stress(x, y, z, layer)
         # the figure asked away from the contact edge
         np.testing.assert_allclose(found, expected, atol=2e-4 * P_H, rtol=0)

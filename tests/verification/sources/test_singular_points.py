@@ -9,6 +9,7 @@ import fem_reference
 import semianalytic
 from verification.cases.published_file import read_published
 from verification.judging.outcome import Outcome
+from verification.problem.point_answers import Points
 from verification.running.published_run import run
 from verification.sources.references import uniform_disc
 
@@ -43,9 +44,9 @@ def test_the_rim_of_a_uniform_disc_has_displacements_but_no_stress(solve, fricti
     turn = np.linspace(0, 2 * np.pi, 7)
     x, y = A * np.cos(turn), A * np.sin(turn)
     assert np.isnan(s.stress(x, y, 0.0)).all()
-    assert np.isnan(s.stress_uncertainty(x, y, 0.0)).all()
-    assert np.isnan([s.pressure(x, y), s.pressure_uncertainty(x, y)]).all()
-    assert np.isfinite([s.displacement(x, y, 0.0), s.displacement_uncertainty(x, y, 0.0)]).all()
+    assert np.isnan(s.sample(Points(x, y), "stress").uncertainty).all()
+    assert np.isnan(s.sample(Points(x, y), "pressure")).all()
+    assert np.isfinite(s.sample(Points(x, y), "displacement")).all()
     r = A * np.array([0.0, 1 - 1e-6, 1 + 1e-6, 1.0])
     assert np.isfinite(s.stress(r, 0.0, [0.0, 0.0, 0.0, 1e-3 * A])).all()
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from verification.problem.point_answers import Points
 from verification.sources.references.uniform_disc import UniformDisc, solve_prescribed
 
 Q, A = 2e6, 0.15
@@ -27,7 +28,7 @@ def test_axis_of_the_half_space_is_johnson_1985():
     expected = Q * 1.3 / 1e9 * (A**2 / np.hypot(A, z) + 0.4 * (np.hypot(A, z) - z))
     assert u == pytest.approx(expected, rel=1e-10, abs=0)
     assert found.approach == pytest.approx(2 * Q * A * 0.91 / 1e9, rel=1e-12, abs=0)
-    assert found.uncertainty.approach == found.displacement_uncertainty(0.0, 0.0, 0.0)[2]
+    assert found.uncertainty.approach == found.sample(Points(0.0, 0.0, 0.0), "displacement").uncertainty[2]
 
 
 def test_surface_outside_is_that_of_a_point_load_from_afar():

@@ -17,8 +17,9 @@ from verification.evidence.enclosure_record import (
 )
 from verification.judging.invariant_verdict import decide
 from verification.judging.verdict import Outcome, compare, judge
-from verification.problem.coated_contact import CoatedContact, Solution, keywords, stress_with_uncertainty
+from verification.problem.coated_contact import CoatedContact, Solution, keywords
 from verification.problem.line_profile import Profile
+from verification.problem.point_answers import Points
 from verification.sources.references import integral_equation
 
 
@@ -119,10 +120,8 @@ def _value(problem: CoatedContact, solution: Solution, bounds: Bounds) -> tuple[
     if bounds.quantity == "sigma_xx":
         layer = 1 if bounds.line == LOWER else 0
         z = 0.0 if bounds.line == SURFACE else problem.interfaces[0]
-        sigma, U_sigma = stress_with_uncertainty(solution, 0.0, 0.0, z, layer)
-        return float(sigma[0, 0]), None if U_sigma is None else float(U_sigma[0, 0])
-    if bounds.quantity == "pressure":
-        U = None if solution.uncertainty is None else float(solution.pressure_uncertainty(0.0))
-        return float(solution.pressure(0.0)), U
-    U = None if solution.uncertainty is None else getattr(solution.uncertainty, bounds.quantity)
-    return getattr(solution, bounds.quantity), U
+        value, U = solution.sample(Points(0.0, 0.0, z, layer), "stress")
+        value, U = value[0, 0], None if U is None else U[0, 0]
+    else:
+        value, U = solution.sample(Points(0.0) if bounds.quantity == "pressure" else None, bounds.quantity)
+    return float(value), None if U is None else float(U)

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import FLAT, Uncertainty
+from verification.problem.coated_contact import Uncertainty
+from verification.problem.point_answers import FIELDS, FLAT, ByFunctions, Points
 from verification.sources.references.hamilton import Hamilton
 
 Answers = Iterator[tuple[str, Any, Any]]  # what was asked, what the harness found, what it has to be
@@ -25,18 +26,10 @@ class Stated(Hamilton):
         share = self.share
         return Uncertainty(share * self.contact_radius, share * self.approach, share * self.peak_pressure)
 
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        return np.full_like(self.pressure(x, y), self.share * self.peak_pressure)
-
-    def stress_uncertainty(self, *at: Any, **of: Any) -> Array:
-        return np.full_like(self.stress(*at, **of), self.share * self.peak_pressure)
-
-    def displacement_uncertainty(self, *at: Any, **of: Any) -> Array:
-        return np.full_like(self.displacement(*at, **of), self.share * self.approach)
-
-    @property
-    def stiffness_uncertainty(self) -> float:
-        return self.share * self.stiffness
+    def error(self, points: Points | None, quantity: str, value: Any) -> Any:
+        """``share`` of the peak pressure, of the approach or of the number itself."""
+        scale = {"displacement": self.approach, "pressure": self.peak_pressure, "stress": self.peak_pressure}
+        return self.share * (np.full_like(value, scale[quantity]) if quantity in scale else value)
 
 
 @dataclass(frozen=True)
@@ -87,30 +80,24 @@ def moved(i: int, place: Sequence[Any]) -> Any:
     return 1e-7 * (1 + i) + 1e-3 * x + 7e-3 * y + 3e-3 * z
 
 
-class Labelled:
+class Labelled(ByFunctions):
     """A solution whose every number says what it is and where."""
 
     contact_radius, approach, peak_pressure = 1e-4, 1e-6, 3e9
-    stiffness, stiffness_uncertainty = 6e7, 5e1
-    uncertainty = Uncertainty(3e-9, 4e-12, 2e6)
+    stiffness = 6e7
+    uncertainty = Uncertainty(3e-9, 4e-12, 2e6, 5e1)
+
+    def error(self, points: Points | None, quantity: str, value: Any) -> Any:
+        return 1e-3 * value if quantity in FIELDS else getattr(self.uncertainty, quantity)
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         return 1e9 + 1e12 * np.asarray(x, dtype=float) + 3e12 * np.asarray(y, dtype=float)
-
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        return 1e-3 * self.pressure(x, y)
 
     def stress(self, x: Any, y: Any, z: Any, layer: int | None = None, body: str = FLAT) -> Array:
         at = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         sigma = np.array([[labelled(i, j, at, layer) for j in range(3)] for i in range(3)])
         return sigma * (1 if body == FLAT else ON_BALL)
 
-    def stress_uncertainty(self, *at: Any, **of: Any) -> Array:
-        return 1e-3 * self.stress(*at, **of)
-
     def displacement(self, x: Any, y: Any, z: Any, body: str = FLAT) -> Array:
         at = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         return np.array([moved(i, at) for i in range(3)]) * (1 if body == FLAT else ON_BALL)
-
-    def displacement_uncertainty(self, *at: Any, **of: Any) -> Array:
-        return 1e-3 * self.displacement(*at, **of)

@@ -5,8 +5,9 @@ error, so that it is not taken for an answer.
 
 The function returns a mapping or an object with any of contact_radius, approach, peak_pressure,
 largest_tension, tension_place, pressure(x, y), stress(x, y, z, layer), displacement(x, y, z), stress_plane(z,
-layer) at nodes in x and y; for each an uncertainty if there is one:
-``uncertainty`` with the names of the numbers, pressure_uncertainty, stress_uncertainty.
+layer) at nodes in x and y; for each an uncertainty if there is one: ``uncertainty`` with the names of the
+numbers, pressure_uncertainty, stress_uncertainty, displacement_uncertainty. Or it answers ``sample``, as the
+two methods do.
 """
 
 import inspect
@@ -14,7 +15,6 @@ import os
 import sys
 import traceback
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import suppress
 from dataclasses import replace
 from importlib import import_module
 from typing import Any
@@ -34,10 +34,12 @@ from verification.guests.guest_protocol import (
     Question,
     Square,
 )
+from verification.problem import point_answers
 from verification.problem.array_types import Array, Coatings
-from verification.problem.coated_contact import FLAT, CoatedContact, NotClaimed, PrescribedLoad, keywords
+from verification.problem.coated_contact import CoatedContact, PrescribedLoad, keywords
 from verification.problem.line_profile import Line, Profile
-from verification.problem.quantity import DISPLACEMENTS, PEAKS, QUANTITIES, STRESSES
+from verification.problem.point_answers import FIELDS, FLAT, NotClaimed, Points, Sampled
+from verification.problem.quantity import DISPLACEMENTS, PEAKS, STRESSES
 from verification.running.json_records import plain
 from verification.sampling.largest_tension import Search
 from verification.sampling.line_sampling import sample
@@ -54,34 +56,43 @@ def _given(result: Any, name: str) -> Any:
     return result.get(name) if isinstance(result, Mapping) else getattr(result, name, None)
 
 
-class Face:
-    """A guest's result with the attributes of a ``Solution``, each if the guest has it.
-
-    It states no uncertainty, which is used for fields only where it is complete.
-    """
-
-    uncertainty = None
+class GuestFields(Sampled):
+    """A guest's result as a source of what it has, with the uncertainties that it states."""
 
     def __init__(self, result: Any) -> None:
-        self._result = result
+        self.result = result
 
-    def __getattr__(self, name: str) -> Any:
-        value = _given(self._result, name)
-        if value is None:
-            raise AttributeError(name)
-        return {"pressure": self._pressure, "stress": self._stress}.get(name, value)
+    def gives(self, *names: str) -> bool:
+        """Whether it has all these numbers or functions."""
+        return all(_given(self.result, name) is not None for name in names)
 
-    def _pressure(self, x: Any, y: Any = 0.0) -> Array:
-        """p [Pa] at points of the surface, (n,)."""
-        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        return _shaped("pressure", _given(self._result, "pressure")(x, y), x.shape)
+    def sample(self, points: Points | None, quantity: str, uncertainty: bool = True) -> point_answers.Answer:
+        """Value and uncertainty of a field at points, or of a number of the contact."""
+        if points is None:
+            stated = _given(_given(self.result, "uncertainty"), quantity)
+            return point_answers.Answer(
+                _number(_given(self.result, quantity)), _number(stated) if uncertainty else None
+            )
+        U = self._field(f"{quantity}_uncertainty", quantity, points) if uncertainty else None
+        return point_answers.Answer(self._field(quantity, quantity, points), U)
 
-    def _stress(self, x: Any, y: Any, z: Any, layer: int | None = None) -> Array:
-        """sigma[i, j, ...] [Pa] at points, (3, 3) + points."""
-        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
-        function = _given(self._result, "stress")
-        named = {"layer": layer} if "layer" in inspect.signature(function).parameters else {}
-        return _shaped("stress", function(x, y, z, **named), (3, 3, *x.shape))
+    def _field(self, name: str, quantity: str, points: Points) -> Array | None:
+        """Values of the function ``name`` at points, whose shape is that of ``quantity``."""
+        function = _given(self.result, name)
+        if function is None:
+            return None
+        x, y, z = np.broadcast_arrays(
+            *(np.asarray(v, dtype=float) for v in (points.x, points.y, points.z)), subok=True
+        )
+        of: dict[str, Any] = {} if points.body == FLAT else {"body": points.body}
+        if quantity == "stress" and "layer" in inspect.signature(function).parameters:
+            of["layer"] = points.layer
+        found = function(x, y) if quantity == "pressure" else function(x, y, z, **of)
+        return _shaped(name, found, (*FIELDS[quantity], *x.shape))
+
+
+def _number(value: Any) -> float | None:
+    return None if value is None else float(np.asarray(value, dtype=float).reshape(()))
 
 
 def values_of(result: Any, problem: Load, question: Question) -> tuple[Numbers, Numbers]:
@@ -89,37 +100,30 @@ def values_of(result: Any, problem: Load, question: Question) -> tuple[Numbers, 
 
     Raises NotGiven where it gives none, ValueError for one of a wrong shape.
     """
+    guest = GuestFields(result)
     # A whole solution, as the methods return it, is sampled as they are.
-    whole = all(
-        hasattr(result, name) for name in ("uncertainty", "pressure_uncertainty", "stress_uncertainty")
-    )
-    face: Any = result if whole else Face(result)
-    stated = _given(result, "uncertainty")
+    source: Any = result if guest.gives("sample", "uncertainty") else guest
+    whole = source is result or guest.gives("uncertainty", "pressure_uncertainty", "stress_uncertainty")
     values: Numbers = {"contact": {}}
     uncertainty: Numbers = {"contact": {}}
     for name in question.contact:
-        record = QUANTITIES[name]
-        if record.derived is not None or (whole and record.kind == "slope"):
-            with suppress(AttributeError):  # a number of which it follows is not given
-                values["contact"][name] = record.value(face, problem)
-                if whole and (own := record.uncertainty(result, problem)) is not None:
-                    uncertainty["contact"][name] = own
-        elif (value := _given(result, name)) is not None:
-            values["contact"][name] = float(np.asarray(value, dtype=float).reshape(()))
-            if (own := _given(stated, name)) is not None:
-                uncertainty["contact"][name] = float(own)
+        value, own = source.sample(None, name)
+        if value is not None:
+            values["contact"][name] = value
+        if own is not None:
+            uncertainty["contact"][name] = own
     missing = set(question.contact) - set(values["contact"])
     if (
         isinstance(problem, CoatedContact)
         and not whole
         and missing & set(PEAKS)
-        and _able(face, "stress", "contact_radius")
+        and guest.gives("stress", "contact_radius")
     ):
-        search = Search(face, problem)
-        found = search.largest(face.stress(search.x, 0.0, 0.0, layer=0)[0, 0], None)
+        search = Search(source, problem)
+        found = search.largest(guest.stress(search.x, 0.0, 0.0, layer=0)[0, 0], None)
         values["contact"] |= dict(zip(PEAKS, (found.value, found.place), strict=True))
     for asked in question.lines:
-        for p in _sampled(result, problem, asked) if whole else _on_line(face, asked):
+        for p in _sampled(source, result, problem, asked) if whole else _on_line(guest, asked):
             one = p.line == "contact"
             if p.quantity in (missing if one else asked.quantities):
                 values.setdefault(p.line, {})[p.quantity] = p.value[0] if one else p.value
@@ -133,11 +137,7 @@ def values_of(result: Any, problem: Load, question: Question) -> tuple[Numbers, 
     return values, {line: numbers for line, numbers in uncertainty.items() if numbers}
 
 
-def _able(face: Any, *names: str) -> bool:
-    return all(getattr(face, name, None) is not None for name in names)
-
-
-def _sampled(solution: Any, problem: Load, asked: LineOfPoints) -> tuple[Profile, ...]:
+def _sampled(solution: Any, result: Any, problem: Load, asked: LineOfPoints) -> tuple[Profile, ...]:
     """Every quantity of a whole solution on a line, with the uncertainties, as the methods are sampled."""
     points = np.array([asked.x, asked.y, asked.z])
     (_, y, z), ends = points, points[:, [0, -1]]
@@ -157,43 +157,48 @@ def _sampled(solution: Any, problem: Load, asked: LineOfPoints) -> tuple[Profile
     )
     contact = problem if line.depth == 0 and isinstance(problem, CoatedContact) else None
     found = sample(solution, "guest", line, position, contact)
-    if asked.line != PLANE or (plane := _of_plane(solution, asked)) is None:
+    if asked.line != PLANE or (plane := _of_plane(result, asked)) is None:
         return found
     return tuple(replace(p, value=plane[p.quantity]) if p.quantity in plane else p for p in found)
 
 
-def _of_plane(face: Any, asked: LineOfPoints) -> dict[str, Array] | None:
+def _of_plane(result: Any, asked: LineOfPoints) -> dict[str, Array] | None:
     """The stresses of a whole plane at points, by a cubic spline; None where the plane is not given there."""
-    if not _able(face, "stress_plane", "nodes"):
+    stress_plane, nodes = (_given(result, name) for name in ("stress_plane", "nodes"))
+    if stress_plane is None or nodes is None:
         return None
-    nodes = np.asarray(face.nodes, dtype=float)
+    nodes = np.asarray(nodes, dtype=float)
     x, y = np.array(asked.x), np.array(asked.y)
     if nodes.ndim != 1 or max(abs(x).max(), abs(y).max()) > min(-nodes[0], nodes[-1]):
         return None
-    sigma = _shaped("stress_plane", face.stress_plane(asked.z[0], asked.layer[0]), (3, 3, *2 * nodes.shape))
+    sigma = _shaped("stress_plane", stress_plane(asked.z[0], asked.layer[0]), (3, 3, *2 * nodes.shape))
     return {name: RectBivariateSpline(nodes, nodes, sigma[c]).ev(x, y) for name, c in STRESSES.items()}
 
 
-def _on_line(face: Any, asked: LineOfPoints) -> Iterator[Profile]:
-    """Every quantity that ``face`` gives at points of the flat; nothing of a ball."""
+def _on_line(guest: GuestFields, asked: LineOfPoints) -> Iterator[Profile]:
+    """Every quantity that the guest gives at points of the flat; nothing of a ball but its planes."""
     x, y, z = (np.array(v) for v in (asked.x, asked.y, asked.z))
-    found: dict[str, Array] = {}
-    flat = asked.body == FLAT
-    if flat and "pressure" in asked.quantities and _able(face, "pressure"):
-        found["pressure"] = face.pressure(x, y)
-    if asked.line == PLANE and (plane := _of_plane(face, asked)) is not None:
-        found |= plane
-    elif flat and set(STRESSES) & set(asked.quantities) and _able(face, "stress"):
-        sigma, layers = np.empty((3, 3, x.size)), np.array(asked.layer)
-        for layer in sorted(set(asked.layer)):
-            here = layers == layer
-            sigma[..., here] = face.stress(x[here], y[here], z[here], layer=layer)
-        found |= {name: sigma[component] for name, component in STRESSES.items()}
-    if flat and set(DISPLACEMENTS) & set(asked.quantities) and _able(face, "displacement"):
-        u = _shaped("displacement", face.displacement(x, y, z), (3, x.size))
-        found |= {name: u[i] for i, name in enumerate(DISPLACEMENTS)}
-    for quantity, value in found.items():
-        yield Profile(quantity, asked.line, x, value, "guest")
+    plane = _of_plane(guest.result, asked) if asked.line == PLANE else None
+    found: dict[str, tuple[Array, Array | None]] = {name: (s, None) for name, s in (plane or {}).items()}
+
+    def sampled(field: str, names: Mapping[str, Any], layer: int | None, here: Any = slice(None)) -> None:
+        value, U = guest.sample(Points(x[here], y[here], z[here], layer), field)
+        for name, c in names.items() if value is not None else ():
+            into = found.setdefault(name, (np.empty(x.size), None if U is None else np.empty(x.size)))
+            into[0][here] = value[c]
+            if U is not None and into[1] is not None:
+                into[1][here] = U[c]
+
+    if asked.body == FLAT:
+        if "pressure" in asked.quantities:
+            sampled("pressure", {"pressure": slice(None)}, None)
+        if plane is None and set(STRESSES) & set(asked.quantities):
+            for layer in sorted(set(asked.layer)):
+                sampled("stress", STRESSES, layer, np.array(asked.layer) == layer)
+        if set(DISPLACEMENTS) & set(asked.quantities):
+            sampled("displacement", {name: i for i, name in enumerate(DISPLACEMENTS)}, None)
+    for quantity, (value, U) in found.items():
+        yield Profile(quantity, asked.line, x, value, "guest", U)
 
 
 def _shaped(name: str, value: Any, shape: tuple[int, ...]) -> Array:

@@ -1,5 +1,7 @@
 """Invariants of deformation: perfect bonds, Hooke's law, the sphere's shape under the contact."""
 
+from typing import Any
+
 import numpy as np
 from scipy.special import ellipk
 
@@ -7,14 +9,10 @@ from verification.judging.invariant_verdict import Invariant, decide, layer_name
 from verification.judging.invariants.central_differences import Stencil
 from verification.judging.invariants.companion_uncertainty import INNER, followed
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import (
-    CoatedContact,
-    PrescribedLoad,
-    Solution,
-    stress_with_uncertainty,
-)
+from verification.problem.coated_contact import CoatedContact, PrescribedLoad, Solution
 from verification.problem.either_body import on_body
 from verification.problem.gauss_legendre import gauss_legendre
+from verification.problem.point_answers import Points
 
 RADII = np.array([0.0, 0.5, 0.9, 1.4])
 ANGLE = 0.35
@@ -29,7 +27,7 @@ def bonded_traction(solution: Solution, source: str, problem: CoatedContact, k: 
     """sigma_xz, sigma_yz and sigma_zz are the same on both sides of interface ``k``, from 1."""
     x, y, z = _line(solution, problem, k)
     (upper, U_upper), (lower, U_lower) = (
-        stress_with_uncertainty(solution, x, y, z, layer=layer) for layer in (k - 1, k)
+        solution.sample(Points(x, y, z, layer), "stress") for layer in (k - 1, k)
     )
     jump = (upper - lower)[:, 2] / problem.p_h
     bound = None if U_upper is None or U_lower is None else (U_upper + U_lower)[:, 2] / problem.p_h
@@ -52,9 +50,8 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
         line, parabola = 2 * u[0] - u[1], 3 * u[0] - 3 * u[1] + u[2]
         at.append(parabola)
         error = error + np.abs(parabola - line)
-    bound = None
-    if solution.uncertainty is not None:
-        U = displacement_bound(solution, problem, x, y, z, given_pressure=True)
+    U, bound = displacement_bound(solution, problem, x, y, z, given_pressure=True), None
+    if U is not None:
         E, nu, _ = problem.coatings[0]
         alone = np.pi / 2 * (1 - nu**2) / E * solution.peak_pressure * solution.contact_radius
         bound = (error + 2 * U + (EVALUATED * alone if k == 1 else 0.0)) / solution.approach
@@ -75,7 +72,7 @@ def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, s
     gradient, error = stencil.gradient(u)
     strain = (gradient + gradient.swapaxes(0, 1)) / 2
     x, y, z = stencil.place
-    sigma, U = stress_with_uncertainty(solution, x, y, z, layer=layer)
+    sigma, U = solution.sample(Points(x, y, z, layer), "stress")
     unit = np.eye(3)[:, :, None]
     residual = E * strain - (1 + nu) * sigma + nu * unit * np.trace(sigma)
     bound = None
@@ -101,10 +98,10 @@ def sphere(solution: Solution, source: str, problem: CoatedContact) -> Invariant
     u = sum(one.displacement(zero, y, zero)[2] for one, _ in bodies)
     gap = (u + y**2 / (2 * problem.radius) - solution.approach) / solution.approach
     residual = np.where(y <= solution.contact_radius, gap, np.minimum(gap, 0.0))
-    stated, bound = solution.uncertainty, None
+    stated, bound = solution.sample(None, "approach").uncertainty, None
     if stated is not None:
         U = sum(displacement_bound(one, seen, zero, y, zero) for one, seen in bodies)
-        bound = (stated.approach + U) / solution.approach
+        bound = (stated + U) / solution.approach
     law = "u_z + r^2/2R = approach in the contact, no less outside, over the approach"
     return decide("sphere", source, law, residual, bound)
 
@@ -120,9 +117,8 @@ def reciprocity(solution: Solution, source: str, problem: CoatedContact) -> Inva
     zero = np.zeros_like(x)
     ahead, behind = (solution.displacement(side * x, y, zero) for side in (1.0, -1.0))
     odd = (ahead - behind) / 2
-    bound = None
-    if solution.uncertainty is not None:
-        U = displacement_bound(solution, problem, x, y, zero, given_pressure=True)
+    U, bound = displacement_bound(solution, problem, x, y, zero, given_pressure=True), None
+    if U is not None:
         bound = (1 + problem.friction) * U / solution.approach
     law = "u_z odd in x, by sliding, is -f times u_x odd in x, by the load; over the approach"
     residual = (odd[2] + problem.friction * odd[0]) / solution.approach
@@ -137,16 +133,20 @@ def displacement_bound(
     z: Array,
     *,
     given_pressure: bool = False,
-) -> Array:
+) -> Any:
     """Uncertainty of displacements at points [m]: that of the approach, plus the displacement under U_p,
 
         u(r) = 4/(pi E*) int U_p(s) K(m) s/(r+s) ds,   m = 4 r s/(r+s)^2
 
     on the half-space of the most compliant material, with K the complete elliptic integral, Johnson (3.96),
     plus, where a solution has coarser companions, their change, which then replaces U_p near the edge. For an
-    invariant that holds under any pressure, ``given_pressure``, U_p does not enter.
+    invariant that holds under any pressure, ``given_pressure``, U_p does not enter. None where no uncertainty
+    is stated.
     """
-    U = np.full(np.shape(x), float(solution.uncertainty.approach))
+    stated = solution.sample(None, "approach").uncertainty
+    if stated is None:
+        return None
+    U = np.full(np.shape(x), float(stated))
     change = followed(solution, lambda s: s.displacement(x, y, z))
     if not given_pressure:
         U += _under_uncertainty(solution, problem, x, y, 1.0 if change is None else INNER)
@@ -163,7 +163,7 @@ def _under_uncertainty(
     # The uncertainty is largest at the edge, and extends beyond it.
     s = a * np.concatenate([np.sin(phi), 1 + 0.05 * (t + 1)])
     weight = a * np.concatenate([np.pi / 4 * w * np.cos(phi), 0.05 * w])
-    U = solution.pressure_uncertainty(s * np.cos(ANGLE), s * np.sin(ANGLE))
+    U = solution.sample(Points(s * np.cos(ANGLE), s * np.sin(ANGLE)), "pressure").uncertainty
     if reach < 1:
         U = np.where(s < reach * a, U, 0.0)
     E_star = min(E / (1 - nu**2) for E, nu in [c[:2] for c in problem.coatings] + [problem.substrate])

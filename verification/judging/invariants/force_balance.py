@@ -6,8 +6,9 @@ from verification.judging.invariant_verdict import Invariant, decide, layer_name
 from verification.judging.invariants.central_differences import Stencil
 from verification.judging.invariants.companion_uncertainty import INNER, followed
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.gauss_legendre import gauss_legendre
+from verification.problem.point_answers import Points
 
 # Of the contact radius.
 SURFACE = np.array([-1.2, -0.9, -0.5, 0.0, 0.25, 0.5, 0.75, 0.9, 1.1, 1.3])
@@ -25,17 +26,19 @@ def load_balance(solution: Solution, source: str, problem: CoatedContact) -> Inv
     """
     fine, coarse = (_load(solution, problem, n) for n in (40, 28))
     bound = None
-    if solution.uncertainty is not None:
+    if fine[1] is not None:
         bound = fine[1]
         change = followed(solution, lambda s: np.array(_load(s, problem, 40)[0]))
         if change is not None:
-            bound = min(bound, _load(solution, problem, 40, INNER)[1] + float(change))
+            bound = min(bound, (_load(solution, problem, 40, INNER)[1] or 0.0) + float(change))
         bound += abs(fine[0] - coarse[0])
     return decide("load balance", source, "int p dA = W, over W", fine[0] - 1, bound)
 
 
-def _load(solution: Solution, problem: CoatedContact, n: int, reach: float = np.inf) -> tuple[float, float]:
-    """int p dA and, within ``reach`` of a, int U_p dA over W.
+def _load(
+    solution: Solution, problem: CoatedContact, n: int, reach: float = np.inf
+) -> tuple[float, float | None]:
+    """int p dA and, within ``reach`` of a, int U_p dA over W, None where none is stated.
 
     By Gauss points in phi of r = a sin(phi) and in an outer ring.
     """
@@ -48,10 +51,9 @@ def _load(solution: Solution, problem: CoatedContact, n: int, reach: float = np.
     turn = 2 * np.pi * (np.arange(8) + 0.3) / 8
     x, y = r[:, None] * np.cos(turn), r[:, None] * np.sin(turn)
     weight = weight[:, None] * 2 * np.pi / 8 / problem.load
-    p = solution.pressure(x, y)
-    U = solution.pressure_uncertainty(x, y) if solution.uncertainty is not None else np.zeros_like(p)
+    p, U = solution.sample(Points(x, y), "pressure")
     within = np.where(r < reach * a, 1.0, 0.0)[:, None]
-    return float((weight * p).sum()), float((weight * within * U).sum())
+    return float((weight * p).sum()), None if U is None else float((weight * within * U).sum())
 
 
 def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
@@ -66,15 +68,15 @@ def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[In
     inside = np.tile(np.abs(x) < solution.contact_radius, 2)
     x, y = np.outer([1.0, np.cos(ANGLE)], x).ravel(), np.outer([0.0, np.sin(ANGLE)], x).ravel()
     f, p_h = problem.friction, problem.p_h
-    p = solution.pressure(x, y) / p_h
-    stress, spread = stress_with_uncertainty(solution, x, y, 0.0, layer=0)
+    p, Up = solution.sample(Points(x, y), "pressure")
+    stress, spread = solution.sample(Points(x, y, 0.0, 0), "stress")
+    p = p / p_h
     sigma = stress[:, 2] / p_h
     normal, shear = sigma[2] + p, np.stack([sigma[0] + f * p, sigma[1]])
     free = np.concatenate([sigma, p[None]])
     bounds: list[Array | None] = [None, None, None]
     if spread is not None:
-        Up = solution.pressure_uncertainty(x, y) / p_h
-        U = spread[:, 2] / p_h
+        U, Up = spread[:, 2] / p_h, Up / p_h
         bounds = [
             (U[2] + Up)[inside],
             np.stack([U[0] + f * Up, U[1]])[:, inside],
@@ -115,11 +117,10 @@ def equilibrium(
     height = stencil.step[2] / problem.p_h
     gradient, error = stencil.gradient(solution.stress(x, y, z, layer=layer))
     force = np.einsum("jijn->in", gradient) * height
-    bound = None
-    if solution.uncertainty is not None:
-        U = np.empty((3, 3, x.size))
-        x, y, z = stencil.corners
-        U[:] = solution.stress_uncertainty(x, y, z, layer).max(axis=-1, keepdims=True)
+    cx, cy, cz = stencil.corners
+    corners, bound = solution.sample(Points(cx, cy, cz, layer), "stress").uncertainty, None
+    if corners is not None:
+        U = np.broadcast_to(corners.max(axis=-1, keepdims=True), (3, 3, x.size))
         differences = np.einsum("jijn->in", error).max(axis=0)
         bound = (np.einsum("jijn->in", stencil.propagated(U)) + differences) * height
     name = layer_name(layer, problem)

@@ -3,9 +3,10 @@
 import numpy as np
 
 from verification.judging.invariant_verdict import Invariant, decide
-from verification.problem.coated_contact import CoatedContact, Solution, displacement_with_uncertainty
+from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.gauss_legendre import gauss_legendre
 from verification.problem.indenter_shape import height_of
+from verification.problem.point_answers import Points
 
 WIDEST = 4.0  # of the contact radius: no contact beyond
 RINGS, ANGLES = 60, 96  # of the quadrature over the plane
@@ -29,17 +30,17 @@ def gap(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
     inside, outside = np.all(loaded, axis=1), np.all(~loaded, axis=1)
     clear = np.flatnonzero(inside | outside)
     x, y, inside = x[clear], y[clear], np.asarray(inside)[clear]
-    u, U = displacement_with_uncertainty(solution, x, y, 0.0)
+    u, U = solution.sample(Points(x, y), "displacement")
     lifted = u[2]
     if problem.friction:
-        lifted = (u[2] + displacement_with_uncertainty(solution, -x, y, 0.0)[0][2]) / 2
+        lifted = (u[2] + solution.displacement(-x, y, 0.0)[2]) / 2
     left = (
         lifted + height_of(problem.indenter, problem.radius)(x, y) - solution.approach
     ) / solution.approach
     residual = np.where(inside, left, np.minimum(left, 0.0))
     bound = None
-    if U is not None and solution.uncertainty is not None:
-        bound = (U[2] + solution.uncertainty.approach) / solution.approach
+    if U is not None:
+        bound = (U[2] + solution.sample(None, "approach").uncertainty) / solution.approach
     law = "u_z + height = approach in the contact, no less outside, over the approach"
     return decide("indenter", source, law, residual, bound)
 

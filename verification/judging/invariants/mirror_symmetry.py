@@ -4,7 +4,8 @@ import numpy as np
 
 from verification.judging.invariant_verdict import Invariant, decide
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution, stress_with_uncertainty
+from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.point_answers import Points
 
 RADII = np.array([0.3, 0.7])
 # Off every mirror plane, mapped onto one another by both mirrors.
@@ -21,14 +22,14 @@ def symmetry(solution: Solution, source: str, problem: CoatedContact) -> tuple[I
     """
     r = solution.contact_radius * RADII[:, None]
     x, y = r * np.cos(TURNS), r * np.sin(TURNS)
-    stated = solution.uncertainty is not None
     sigma, U = [], []
     for z, layer in _depths(solution, problem):
-        stress, spread = stress_with_uncertainty(solution, x, y, z, layer)
+        stress, spread = solution.sample(Points(x, y, z, layer), "stress")
         sigma.append(stress / problem.p_h)
         if spread is not None:
             U.append(spread / problem.p_h)
     s = np.stack(sigma, axis=2)
+    stated = bool(U)
     u = np.stack(U, axis=2) if stated else np.zeros_like(s)
     found = []
     for axis, name in ((0, "x"), (1, "y")):

@@ -17,16 +17,10 @@ from verification.judging.invariant_verdict import Invariant, decide, failed
 from verification.judging.invariants.bonded_deformation import displacement_bound
 from verification.judging.invariants.thickness_limits import thick_shift, thin_shift
 from verification.problem.array_types import Array, Ball, Coatings
-from verification.problem.coated_contact import (
-    BALL,
-    FLAT,
-    CoatedContact,
-    PrescribedLoad,
-    Solution,
-    stress_with_uncertainty,
-)
+from verification.problem.coated_contact import CoatedContact, PrescribedLoad, Solution
 from verification.problem.either_body import on_body
 from verification.problem.gauss_legendre import gauss_legendre
+from verification.problem.point_answers import BALL, FLAT, Points
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.references.hamilton import Hamilton
 from verification.sources.source_registry import METHODS, SOURCES
@@ -160,7 +154,7 @@ def _equal_bodies(solve: Solve, source: str, problem: CoatedContact) -> Invarian
     zero = np.zeros_like(y)
     flat, ball = (_surface_displacement(on_body(found, body), y) for body in equal.bodies)
     half = np.where(y < found.contact_radius, (found.approach - y**2 / (2 * equal.radius)) / 2, flat)
-    U = found.uncertainty.approach + 2 * displacement_bound(found, equal, zero, y, zero)
+    U = found.sample(None, "approach").uncertainty + 2 * displacement_bound(found, equal, zero, y, zero)
     law = "a ball of the flat's layers gives half of u_z, over the approach"
     gap = np.concatenate([flat - ball, flat - half]) / found.approach
     return decide("equal bodies", source, law, gap, np.tile(U / found.approach, 2))
@@ -186,12 +180,13 @@ def _thick(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
     found = solve(thick)
     base, eta = thick_shift(thick, alone)
     scales = np.array([alone.a_h, alone.p_h, alone.delta_h])
-    values = np.array([found.contact_radius, found.peak_pressure, found.approach - base]) / scales
-    U = found.uncertainty
+    answers = (found.sample(None, name) for name in ("contact_radius", "peak_pressure", "approach"))
+    values, U = (np.array(column) for column in zip(*answers, strict=True))
+    values = (values - [0.0, 0.0, base]) / scales
     # A gap changed by eta of the approach has a curvature changed by twice that; a and p0 vary as its powers
     # 1/3 and 2/3.
     bent = np.array([2 / 3, 4 / 3, 1.0]) * eta
-    bound = np.array([U.contact_radius, U.peak_pressure, U.approach]) / scales + bent
+    bound = U / scales + bent
     law = f"h = {THICK_AT:g} a_h gives Hertz of the coating, plus the displacement of the base"
     return decide("thick coating", source, law, values - 1, bound)
 
@@ -206,9 +201,10 @@ def _thin(solve: Solve, source: str, problem: CoatedContact) -> Invariant:
     thin = replace(problem, coatings=((E, nu, THIN_AT * problem.a_h),))
     found = solve(thin)
     first = thin_shift(thin) / thin.delta_h
-    gap = found.approach / thin.delta_h - 1 - first
+    approach, U = found.sample(None, "approach")
+    gap = approach / thin.delta_h - 1 - first
     law = f"h = {THIN_AT:g} a_h gives the approach of Hertz of the substrate but for its first-order change"
-    bound = found.uncertainty.approach / thin.delta_h + 2 * first**2
+    bound = U / thin.delta_h + 2 * first**2
     return decide("thin coating", source, law, gap, bound, cap=APPROACH_CAP)
 
 
@@ -229,7 +225,7 @@ def _reciprocity(base: Solve, solve: Solve, source: str, problem: CoatedContact)
         area = 2 * np.pi * r * contact.contact_radius * np.pi / 4 * w * np.cos(phi) / work
         s = disc.load_radius * (t + 1) / 2
         patch = np.pi * s * disc.load_radius * w / work
-        p, U_p = contact.pressure(0 * r, r), contact.pressure_uncertainty(0 * r, r)
+        p, U_p = contact.sample(Points(0 * r, r), "pressure")
         u_disc, u = _surface_displacement(pressed, r), _surface_displacement(contact, s)
         U = area @ (U_p * np.abs(u_disc) + p * displacement_bound(pressed, disc, 0 * r, r, 0 * r))
         U += disc.pressure * patch @ displacement_bound(contact, problem, 0 * s, s, 0 * s)
@@ -251,14 +247,14 @@ def _dimensionless(
 
     bodies : all in their order, unless given.
     """
-    scalars = [(QUANTITIES[name], getattr(problem, QUANTITIES[name].scale)) for name in SCALARS]
+    scalars = [(name, getattr(problem, QUANTITIES[name].scale)) for name in SCALARS]
     x, z = problem.a_h * np.array(PLACES).T
     y = 0.2 * np.abs(x)
-    values = [quantity.value(solution, problem) / scale for quantity, scale in scalars]
-    U = [(quantity.uncertainty(solution, problem) or 0.0) / scale for quantity, scale in scalars]
-    fields, bounds = [np.array(values)], [np.array(U)]
+    answers = [(solution.sample(None, name), scale) for name, scale in scalars]
+    fields = [np.array([one.value / scale for one, scale in answers])]
+    bounds = [np.array([(one.uncertainty or 0.0) / scale for one, scale in answers])]
     for body in bodies or problem.bodies:
-        sigma, U_sigma = stress_with_uncertainty(on_body(solution, body), x, y, z)
+        sigma, U_sigma = on_body(solution, body).sample(Points(x, y, z), "stress")
         if U_sigma is None:
             raise ValueError("states no uncertainty that would bound the invariant")
         fields.append((sigma / problem.p_h).ravel())

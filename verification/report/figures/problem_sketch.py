@@ -9,7 +9,7 @@ from markupsafe import Markup
 
 from verification.page.html_page import rendered
 from verification.page.number_text import engineering, plain
-from verification.problem.coated_contact import BALL
+from verification.problem.point_answers import BALL
 from verification.report.tables.case_lookup import INDENTERS, layers, scale
 
 HTML = Path(__file__).parents[1] / "html"

@@ -12,7 +12,7 @@ from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.number_text import scientific
 from verification.page.source_labels import OUTCOMES, pair_style, source_label, source_style, symbol_of
 from verification.page.symbol_text import typeset
-from verification.problem.coated_contact import BALL
+from verification.problem.point_answers import BALL
 from verification.problem.quantity import QUANTITIES
 from verification.report.figures.field_pictures import pictures
 from verification.report.figures.line_panels import case_figures

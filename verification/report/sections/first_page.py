@@ -16,8 +16,8 @@ from verification.evidence.first_notice import COUNTED, Noticed, noticed
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.number_text import plain, scientific
 from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of
-from verification.problem.coated_contact import BALL
 from verification.problem.line_profile import EDGE_LINE
+from verification.problem.point_answers import BALL
 from verification.problem.quantity import QUANTITIES, SCALARS, SLOPES
 from verification.regression.baseline_change import State, baseline_message
 from verification.regression.manifest import manifest_message

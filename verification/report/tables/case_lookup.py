@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from verification.judging.verdict import Comparison
 from verification.page.page_parts import Cell
-from verification.problem.coated_contact import BALL, FLAT
 from verification.problem.line_profile import Profile
+from verification.problem.point_answers import BALL, FLAT
 from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import CaseResult
 from verification.sources.source_registry import METHODS, REFERENCES

@@ -11,9 +11,9 @@ from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.number_text import aligned, engineering, plain, scientific
 from verification.page.page_parts import Cell, Table, Value, number, outcome_cell, row, table_of
 from verification.page.source_labels import OUTCOMES, pair_label, row_css, source_label, symbol_of
-from verification.problem.coated_contact import BALL, FLAT
 from verification.problem.indenter_shape import SHAPES
 from verification.problem.line_profile import coordinate_of
+from verification.problem.point_answers import BALL, FLAT
 from verification.problem.quantity import BALL_PEAKS, PEAKS, QUANTITIES, SCALARS, SLOPES, unit_of
 from verification.report.report_words import stated
 from verification.report.tables.case_lookup import INDENTERS, layers, scalar, scale

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import BALL, FLAT
+from verification.problem.point_answers import BALL, FLAT
 from verification.sources.references.hertz import Hertz, HertzContact, integrals
 
 

@@ -26,13 +26,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import BALL, FLAT, Uncertainty
+from verification.problem.coated_contact import Uncertainty
+from verification.problem.point_answers import BALL, FLAT, ByFunctions
 
 Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
-class HertzContact:
+class HertzContact(ByFunctions):
     """Sphere of ``radius`` [m] under ``load`` [N] on a solid of ``E`` [Pa], ``nu``: its size and pressure.
 
     ball : (E [Pa], nu) of the sphere, None where it is rigid.
@@ -86,11 +87,6 @@ class HertzContact:
         return 2 * self.E_star * self.contact_radius
 
     @property
-    def stiffness_uncertainty(self) -> float:
-        """Zero: exact."""
-        return 0.0
-
-    @property
     def peak_pressure(self) -> float:
         """p0 = 3 W / (2 pi a^2) [Pa]. Johnson (4.24)."""
         return 3 * self.load / (2 * np.pi * self.contact_radius**2)
@@ -105,29 +101,10 @@ class HertzContact:
         """Nothing to report of a closed form."""
         return Uncertainty()
 
-    @property
-    def surface_nodes(self) -> Array:
-        """The pressure is known everywhere; 401 points on [-2a, 2a]."""
-        return 2 * self.contact_radius * np.linspace(-1, 1, 401)
-
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """p = p0 sqrt(1 - r^2/a^2) inside the contact, 0 outside [Pa]. Johnson (3.39)."""
         r = np.hypot(x, y)
         return self.peak_pressure * np.sqrt(np.maximum(1 - (r / self.contact_radius) ** 2, 0))
-
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """Zero [Pa]: exact."""
-        return np.zeros(np.broadcast_shapes(np.shape(x), np.shape(y)))
-
-    def stress_uncertainty(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
-    ) -> Array:
-        """Zero [Pa]: exact."""
-        return np.zeros((3, 3, *np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))))
-
-    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
-        """Zero [m]: exact."""
-        return np.zeros((3, *np.broadcast_shapes(np.shape(x), np.shape(y), np.shape(z))))
 
     def _displaced(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, f: float) -> Array:
         """Displacement [m] under p with q = f p in +x, (3,) + points. With c = p0 a (1 + nu)/E:

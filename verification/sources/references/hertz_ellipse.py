@@ -17,6 +17,7 @@ from scipy.special import ellipe, ellipk
 
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import Uncertainty
+from verification.problem.point_answers import ByFunctions
 
 __all__ = ["HertzEllipse", "PressedEllipsoid", "pressed_ellipsoid"]
 
@@ -56,14 +57,13 @@ EXACT = Uncertainty()
 
 
 @dataclass(frozen=True)
-class PressedEllipsoid:
+class PressedEllipsoid(ByFunctions):
     """Numbers of the contact of an ellipsoid; ``axes`` : semi-axes along x and y [m]."""
 
     contact_radius: float
     approach: float
     peak_pressure: float
     axes: tuple[float, float]
-    stiffness: None = None
     uncertainty: Uncertainty = EXACT
     diagnostics: None = None
 

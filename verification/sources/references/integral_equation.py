@@ -26,8 +26,10 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from verification.problem.array_types import Array, Ball, Coatings
-from verification.problem.coated_contact import BALL, FLAT, Uncertainty
+from verification.problem.coated_contact import Uncertainty
 from verification.problem.gauss_legendre import gauss_legendre, wavenumber_panels
+from verification.problem.point_answers import BALL, FLAT, ByFunctions, Points, by_functions
+from verification.problem.quantity import SCALARS
 from verification.sources.references.axisymmetric_pressure import AbelPressure
 from verification.sources.references.hankel_field import HankelField
 from verification.sources.references.layered_half_space import (
@@ -63,7 +65,7 @@ class ExactDiagnostics:
 
 
 @dataclass(frozen=True, eq=False)
-class ExactSolution:
+class ExactSolution(ByFunctions):
     """Contact, stresses, displacements; the difference from ``coarser`` gives the uncertainty.
 
     fields : of the flat, then of an elastic ball.
@@ -88,28 +90,16 @@ class ExactSolution:
         """Largest pressure [Pa], on the axis unless a stiff film bends."""
         return self.abel.peak
 
-    @property
-    def surface_nodes(self) -> Array:
-        """The pressure is known everywhere; 401 points on [-2a, 2a]."""
-        return 2 * self.abel.a * np.linspace(-1, 1, 401)
-
     @cached_property
     def uncertainty(self) -> Uncertainty | None:
         """Twice the change when every quadrature is made coarser by a quarter, with the rounding."""
         if self.coarser is None:
             return None
         U = {}
-        for name in ("contact_radius", "approach", "peak_pressure"):
+        for name in ("contact_radius", "approach", "peak_pressure", "stiffness"):
             value = getattr(self, name)
             U[name] = 2 * abs(value - getattr(self.coarser, name)) + 1e-12 * value
-        return Uncertainty(**U, budget=tuple((n, "quadrature", u) for n, u in U.items()))
-
-    @property
-    def stiffness_uncertainty(self) -> float | None:
-        """As of the other scalars [N/m]."""
-        if self.coarser is None:
-            return None
-        return 2 * abs(self.stiffness - self.coarser.stiffness) + 1e-12 * self.stiffness
+        return Uncertainty(**U, budget=tuple((n, "quadrature", U[n]) for n in SCALARS))
 
     @property
     def _rounding(self) -> float:
@@ -139,31 +129,24 @@ class ExactSolution:
         """u[i, ...] [m] of either body towards its points at infinity, shape (3,) + points."""
         return self._field(body).displacement(x, y, z)
 
-    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
-        """Absolute [m], as that of the stress; raises ValueError where no companion was solved."""
-        change = np.abs(self.displacement(x, y, z, body) - self._companion().displacement(x, y, z, body))
-        return 2 * change + self._rounding * self.approach
+    def error(self, points: Points | None, quantity: str, value: Any) -> Any:
+        """Uncertainty of ``value``: by the coarser quadrature, with the rounding; None without it.
 
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """Absolute [Pa]; raises ValueError where no companion was solved."""
-        U = 2 * np.abs(self.pressure(x, y) - self._companion().pressure(x, y))
-        return U + self._rounding * self.peak_pressure + self._by_radius(x, y)
-
-    def stress_with_uncertainty(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
-    ) -> tuple[Array, Array]:
-        """Stress and its uncertainty [Pa], (3, 3) + points; ValueError where no companion was solved."""
-        sigma, coarser = self.stress(x, y, z, layer, body), self._companion().stress(x, y, z, layer, body)
-        U = 2 * np.abs(sigma - coarser) + self._rounding * self.peak_pressure
+        Of pressure and stress on the surface also by the root at the edge, whose radius is uncertain.
+        """
+        if self.coarser is None:
+            return None
+        if points is None:
+            return getattr(self.uncertainty, quantity)
+        U = 2 * np.abs(value - by_functions(self.coarser, points, quantity))
+        if quantity == "displacement":
+            return U + self._rounding * self.approach
+        U += self._rounding * self.peak_pressure
+        root = self._by_radius(points.x, points.y)
+        if quantity == "pressure":
+            return U + root
         # sigma_rr has the root of p inside; under q = f p, 2 f times that outside.
-        root = np.where(np.asarray(z) == 0, (1 + 2 * self.fields[0].friction) * self._by_radius(x, y), 0.0)
-        return sigma, U + root
-
-    def stress_uncertainty(
-        self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
-    ) -> Array:
-        """The second part of ``stress_with_uncertainty``."""
-        return self.stress_with_uncertainty(x, y, z, layer, body)[1]
+        return U + np.where(np.asarray(points.z) == 0, (1 + 2 * self.fields[0].friction) * root, 0.0)
 
     def _by_radius(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Change [Pa] of the root of the pressure at the edge by the uncertain radius."""
@@ -171,11 +154,6 @@ class ExactSolution:
         a = self.abel.a
         distance, shift = np.abs(1 - np.hypot(x, y) / a), self.uncertainty.contact_radius / a
         return self.abel.edge_slope * np.sqrt(2) * (np.sqrt(distance + shift) - np.sqrt(distance))
-
-    def _companion(self) -> "ExactSolution":
-        if self.coarser is None:
-            raise ValueError("uncertainty was not estimated; solve with estimate_uncertainty=True")
-        return self.coarser
 
 
 def solve(

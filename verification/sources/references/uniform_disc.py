@@ -7,6 +7,7 @@ Contact Mechanics (1985), (3.29).
 """
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +15,7 @@ from scipy.special import ellipe, ellipkm1, j1
 
 from verification.problem.array_types import Array, Coatings
 from verification.problem.coated_contact import PrescribedLoad, Uncertainty
+from verification.problem.point_answers import ByFunctions, Points, by_functions
 from verification.sources.references.hankel_field import HankelField
 
 
@@ -48,7 +50,7 @@ class UniformDisc:
 
 
 @dataclass(frozen=True, eq=False)
-class DiscSolution:
+class DiscSolution(ByFunctions):
     """Stresses and displacements; the difference from ``coarser`` gives the uncertainty."""
 
     problem: PrescribedLoad
@@ -74,18 +76,13 @@ class DiscSolution:
     @property
     def uncertainty(self) -> Uncertainty:
         """For u_z at the origin, twice the change when every quadrature is coarser by a quarter."""
-        U = float(self.displacement_uncertainty(0.0, 0.0, 0.0)[2])
+        U = float(self.sample(Points(0.0), "displacement").uncertainty[2])
         return Uncertainty(approach=U, budget=(("approach", "quadrature", U),))
 
     @property
     def diagnostics(self) -> dict[str, float]:
         """Gauss points a panel of wavenumbers, and the exponent at which the integrands are cut."""
         return {"nodes": self.field.nodes, "tail": self.field.tail}
-
-    @property
-    def surface_nodes(self) -> Array:
-        """The pressure is known everywhere; 401 points on [-2a, 2a]."""
-        return 2 * self.disc.a * np.linspace(-1, 1, 401)
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """p [Pa], NaN on the rim, where it jumps."""
@@ -105,19 +102,14 @@ class DiscSolution:
         """u[i, ...] [m] towards infinity."""
         return self.field.displacement(x, y, z)
 
-    def pressure_uncertainty(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
-        """0: the pressure is given."""
-        return self._regular(np.zeros(np.broadcast(x, y).shape), x, y, 0.0)
-
-    def stress_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
-        """Absolute [Pa], shape (3, 3) + points."""
-        change = np.abs(self.stress(x, y, z, layer) - self.coarser.stress(x, y, z, layer))
-        return 2 * change + 1e-12 * self.disc.q
-
-    def displacement_uncertainty(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        """Absolute [m], shape (3,) + points."""
-        u = self.displacement(x, y, z)
-        return 2 * np.abs(u - self.coarser.displacement(x, y, z)) + 1e-12 * np.abs(u).max(initial=0.0)
+    def error(self, points: Points | None, quantity: str, value: Any) -> Any:
+        """Uncertainty of ``value``: twice the change by the coarser quadrature, with the rounding."""
+        if points is None:
+            return getattr(self.uncertainty, quantity)
+        if quantity == "pressure":  # is given
+            return 0 * value
+        rounding = 1e-12 * (self.disc.q if quantity == "stress" else np.abs(value).max(initial=0.0))
+        return 2 * np.abs(value - by_functions(self.coarser, points, quantity)) + rounding
 
 
 def solve_prescribed(
