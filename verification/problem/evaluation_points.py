@@ -1,4 +1,4 @@
-"""TablePoints of the solid at which quantities are evaluated, and the layers in which they lie."""
+"""Points of published tables at which quantities are evaluated, and the layers in which they lie."""
 
 from dataclasses import dataclass
 
@@ -29,7 +29,7 @@ def layer_at(z: Array, coatings: Coatings, layer: int | None) -> NDArray[np.int_
 
 @dataclass(frozen=True, eq=False)
 class TablePoints:
-    """TablePoints x, y, z [m] with the ``layer`` of each.
+    """Points x, y, z [m] of a table with the ``layer`` of each.
 
     unit, in_si : unit of the source with its SI value, for names of lines.
     control : of a loading curve, whose values x are.
@@ -47,7 +47,7 @@ class TablePoints:
     def of(
         cls, x: Array, y: Array, z: Array, coatings: Coatings, layer: int | None, unit: str, in_si: float
     ) -> "TablePoints":
-        """TablePoints with their layers, on an interface the upper one unless ``layer`` says otherwise."""
+        """The points with their layers, on an interface the upper one unless ``layer`` says otherwise."""
         return cls(x, y, z, np.broadcast_to(layer_at(z, coatings, layer), z.shape), unit, in_si)
 
     @classmethod
@@ -58,7 +58,7 @@ class TablePoints:
 
     @classmethod
     def on_curve(cls, control: str, value: Array, unit: str, in_si: float) -> "TablePoints":
-        """TablePoints of a loading curve by the value of its control [m]."""
+        """Points of a loading curve by the value of its control [m]."""
         zero = np.zeros(value.shape)
         return cls(value, zero, zero, np.zeros(value.shape, dtype=int), unit, in_si, control)
 
