@@ -219,7 +219,7 @@ CHANGED = [
     ("load = 20", "load = 20\nhardness = 7", "hardness"),
     ("load = 20", 'load = 20\n"\\u001b[31m" = 7', "key"),
     ("radius = 10e-3", "radius = 5e-324", "problem"),
-    ("E = 210e9", "E = 210", "load"),
+    ("E = 210e9", "E = 210", "looks like GPa"),
     ("E = 420e9", "E = 420e17", "moduli"),
     ("[[problem.coatings]]", "[problem.coatings]", "coatings"),
     ("[[problem.coatings]]", LAYER * 50 + "[[problem.coatings]]", "coatings"),

@@ -322,7 +322,8 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
 def refuse_unfit_scales(path: Path, problem: CoatedContact, pressed: str = "load") -> None:
     """Raise CaseError beyond the range of the parabolic sphere, of a method or of floating point.
 
-    Measured in the contact's own radius.   pressed : key that states the load.
+    Thicknesses lie within the range over the contact's own radius or over that of the bare bodies.
+    pressed : key that states the load.
     """
     R, slips = problem.radius, likely_slips(problem)
     if not 1e-12 < problem.a_h < 1e3:
@@ -336,12 +337,11 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact, pressed: str = "load
     for body in problem.bodies:
         seen = problem.seen_from(body)
         for i, (_, _, h) in enumerate(seen.coatings):
-            low, high = SUPPORTED
-            if not low <= h / a <= high:
+            low, high = SUPPORTED[0] * min(a, problem.a_h), SUPPORTED[1] * max(a, problem.a_h)
+            if not low <= h <= high:
                 reason = (
                     f"{unit.shown_length(h)} is {h / a:.3g} times the contact radius; both methods support "
-                    f"{low:g} to {high:g}, {unit.shown_length(low * a, 3)}"
-                    f" to {unit.shown_length(high * a, 3)}"
+                    f"{unit.shown_length(low, 3)} to {unit.shown_length(high, 3)}"
                 )
                 key = spoken(f"{before(body)}coatings.{i}.thickness")
                 raise CaseError(f"{path}: {key}: {reason}{slips}")

@@ -8,7 +8,7 @@ import numpy as np
 
 from verification.problem.coated_contact import CoatedContact
 from verification.sources.exact_sources import solve_exactly
-from verification.sources.references.integral_equation import (
+from verification.sources.references.solids_in_contact import (
     combined_modulus,
     compliance,
     radius_estimate,

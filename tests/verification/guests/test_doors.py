@@ -190,10 +190,10 @@ def test_judge_judges_what_was_packed(tmp_path):
         ('name = "x"\ncallable = "a:b"\ncommand = ["c"]', "one"),
         ('name = "hertz"\ncallable = "a:b"', "coatcheck"),
         ('name = "x"\ncallable = "a:b"\nclaim = 2', "claim"),
-        ('name = "x"\ncallable = "a:b"\n[refine]\nn = [1, 2]', "refine.n"),
+        ('name = "x"\ncallable = "a:b"\n[refine]\nn = [1, 2]', "refine, n list"),
         ('name = "x"\ncallable = "a:b"\n[refine]\nn = [1, 4, 2]', "coarse"),
         ('name = "x"\ncallable = "a:b"\n[known]\n"p" = "why"', "case/quantity"),
-        ('name = "x"\ncallable = "a:b"\n[units]\nlength = "inch"', "units.length"),
+        ('name = "x"\ncallable = "a:b"\n[units]\nlength = "furlong"', "units, length"),
         ('name = "x"\ncallable = "a:b"\nfrobnicate = 1', "frobnicate"),
     ],
 )

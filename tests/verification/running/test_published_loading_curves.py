@@ -96,7 +96,7 @@ def test_every_value_is_judged_and_departures_are_shown(files):
         ('at = { contact_radius = "a", unit = "h" }', 'at = { z = "a", unit = "h" }', "contact_radius"),
         ('contact_radius = "a"', 'contact_radius = "b"', r"t\.csv"),
         ('unit = "h" }\n', 'unit = "q" }\n', "unknown"),
-        ("uncertainty = 0.006", "uncertainty = -0.1", r"curve\.toml: table\.0\.column\.2\.uncertainty"),
+        ("uncertainty = 0.006", "uncertainty = -0.1", r"curve\.toml: table 1, column 3, uncertainty"),
         ("radius = 10.0\n", "radius = 10.0\nfriction = 0.1\n", "friction"),
         ("radius = 10.0\n", "load = 10.0\n", "load_radius"),
         ('at = { contact_radius = "a", unit = "h" }', "", "positions"),

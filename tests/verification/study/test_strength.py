@@ -98,7 +98,7 @@ def test_the_fractile_counts_and_the_answer_names_the_share_of_failures(tmp_path
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ('{ from = "2 GPa", to = "1 GPa" }', "sigma_xx_base.range"),
+        ('{ from = "2 GPa", to = "1 GPa" }', "sigma_xx_base, range"),
         ('{ mean = "2 GPa" }', "standard_deviation"),
         ('{ mean = "2 GPa", standard_deviation = "3 GPa" }', "exceeds"),
         ('{ mean = "2 m", standard_deviation = "3 GPa" }', "stress"),
@@ -113,7 +113,7 @@ def test_bad_strength_is_one_message_with_its_key(given, message):
     with pytest.raises(CaseError) as error:
         parse_study(text.encode(), Path("mine.toml"))
     assert message in str(error.value)
-    assert "criteria.strength.sigma_xx_base" in str(error.value)
+    assert "criteria, strength, sigma_xx_base" in str(error.value)
     assert "\n" not in str(error.value)
 
 

@@ -12,8 +12,8 @@ from verification.judging.invariant_verdict import Invariant, decide
 from verification.problem.array_types import FloatArray
 from verification.problem.coated_contact import CoatedContact, Solution
 from verification.sources.exact_sources import solve_exactly
-from verification.sources.references.integral_equation import solids_of
 from verification.sources.references.patch_displacement import surface_coefficient
+from verification.sources.references.solids_in_contact import solids_of
 
 PATCHES = 33  # of a solution that does not state its own
 BOUND = 1e-8  # that the default conversion has to meet; its error is 1e-10

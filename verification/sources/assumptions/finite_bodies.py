@@ -27,8 +27,9 @@ from verification.sources.assumptions.contact_change import (
     require_thick,
 )
 from verification.sources.references import integral_equation
-from verification.sources.references.integral_equation import SPHERE, Solid, compliance, kernel_wavenumbers
+from verification.sources.references.integral_equation import SPHERE, kernel_wavenumbers
 from verification.sources.references.layered_half_space import contact_modulus
+from verification.sources.references.solids_in_contact import Solid, compliance
 
 SUMMED, INTEGRATED = 30, 76  # degrees n: a sum below, an integral above, a blend of both between
 PANEL, TAIL = 16, 36.0  # Gauss points in a panel of wavenumbers; exponent beyond which coatings are not felt

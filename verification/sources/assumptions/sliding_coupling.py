@@ -43,7 +43,7 @@ from scipy.optimize import minimize_scalar
 from verification.problem.array_types import Array, Coatings
 from verification.problem.coated_contact import CoatedContact, keywords
 from verification.problem.gauss_legendre import gauss_legendre
-from verification.sources.references import integral_equation
+from verification.sources.references import integral_equation, solids_in_contact
 from verification.sources.references.hankel_field import HankelField, bessel
 from verification.sources.references.integral_equation import ExactSolution, Solid
 from verification.sources.references.layered_half_space import LayeredHalfSpace
@@ -146,22 +146,22 @@ class SlidingExpansion:
         solved: Mapping[str, Any] | None = None,
         exact: ExactSolution | None = None,
     ) -> None:
-        solids = integral_equation.solids_of(problem.coatings, problem.substrate, problem.ball)
+        solids = solids_in_contact.solids_of(problem.coatings, problem.substrate, problem.ball)
         self.problem, self.beta = problem, problem.dundurs_beta
         solved = {"panel": 16, "tail": 36.0, **(solved or {})}
         self.exact = exact or integral_equation.solve(
             **keywords(problem), estimate_uncertainty=False, **solved
         )
         self.a = a = self.exact.contact_radius
-        E_star = integral_equation.combined_modulus(solids)
+        E_star = solids_in_contact.combined_modulus(solids)
         self.scale = E_star * a**2 / (np.pi * problem.radius)
-        outer = integral_equation.outer_thickness(solids, a)
+        outer = solids_in_contact.outer_thickness(solids, a)
         self.nodes = _Nodes.graded(int(nodes * (1 + 0.05 * a / outer)))
         self.points = np.append(self.nodes.s, 1.0)  # with the edge
         k, weight = integral_equation.kernel_wavenumbers(solids, a, solved["panel"], solved["tail"])
         self.k = k * a
         # M - 1 and N - beta with the weights of k
-        self.M = weight * a * (integral_equation.compliance(solids, E_star, k) - 1)
+        self.M = weight * a * (solids_in_contact.compliance(solids, E_star, k) - 1)
         self.N = weight * a * (coupling(solids, E_star, k) - self.beta)
         self.cos, self.sin = np.cos(np.outer(self.k, self.points)), np.sin(np.outer(self.k, self.points))
         self.c = self.exact.abel.c / self.scale
