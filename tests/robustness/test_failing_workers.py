@@ -136,7 +136,7 @@ def test_process_that_cannot_be_started_is_a_reason(tmp_path, monkeypatch):
     def refuse(*_, **__):
         raise OSError(12, "full")
 
-    monkeypatch.setattr(process_pool.subprocess, "Popen", refuse)
+    monkeypatch.setattr(subprocess, "Popen", refuse)
     (reason,) = run_tasks([task("good", tmp_path)], jobs=1, time_limit=300)
     assert "full" in reason
 

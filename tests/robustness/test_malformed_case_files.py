@@ -19,7 +19,7 @@ from verification.cases.case_file import shipped_cases
 from verification.cases.published_file import published_cases, read_published
 from verification.cases.toml_file import CaseError, spoken
 from verification.commands import run as command
-from verification.running.pool import process_pool
+from verification.running.pool import process_slot
 from verification.study.study_plan import read_study_file, shipped_studies
 
 CLAIM = {
@@ -63,7 +63,7 @@ def complaint_of(path: Path, monkeypatch: pytest.MonkeyPatch) -> str | None:
     def accept(*_: object, **__: object) -> None:
         raise Accepted
 
-    monkeypatch.setattr(process_pool.Slot, "start", accept)
+    monkeypatch.setattr(process_slot.Slot, "start", accept)
     monkeypatch.setattr(command, "read_baseline", read_baseline)
     said, printed = io.StringIO(), io.StringIO()
     try:

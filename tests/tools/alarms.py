@@ -22,8 +22,15 @@ from verification.commands.common.shared_options import (
     Quiet,
     RecordsFolder,
     Resume,
+    Scheduler,
 )
-from verification.commands.common.task_progress import kept_results, run_info, solve, worker_count
+from verification.commands.common.task_progress import (
+    executor_at,
+    kept_results,
+    run_info,
+    solve,
+    worker_count,
+)
 from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
 from verification.commands.common.terminal_bar import require_gmsh
 from verification.evidence.alarm_record import DECADES, Alarm, AlarmRecord, Ratios, write_record
@@ -52,6 +59,7 @@ def alarms(
     records: RecordsFolder = RECORDS,
     jobs: Jobs = None,
     time_limit: float = 600.0,
+    scheduler: Scheduler = None,
     resume: Resume = False,
     quiet: Quiet = False,
     as_json: AsJson = False,
@@ -87,15 +95,16 @@ def alarms(
     from verification.report.report_page import write_report
 
     started = datetime.datetime.now(datetime.UTC)
-    with locked(output):
+    output = output.absolute() if scheduler else output  # workers have folders of their own
+    with executor_at(scheduler) as executor, locked(output):
         chosen = draw_ellipse if ellipses else partial(draw, films=films)
         cases = [_case(chosen(seed, number), output) for number in range(count)]
         kept = kept_results(cases, output) if resume else {}
         tasks = [case_task(case, output) for case in cases if case.name not in kept]
-        solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json)}
+        solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json, executor=executor)}
         results = [kept.get(case.name) or solved[case.name] for case in cases]
         of = f"--count {count} --seed {seed} {kind}".rstrip()
-        info = run_info(f"tests/tools alarms {of}", started, jobs)
+        info = run_info(f"tests/tools alarms {of}", started, jobs, scheduler)
         page = write_report(Material(results, info), output, junit_xml(results, info))
         found = counted(results, seed, info)
         stored = write_record(records, found) if record else None

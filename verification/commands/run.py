@@ -29,9 +29,17 @@ from verification.commands.common.shared_options import (
     Quiet,
     RecordsFolder,
     Resume,
+    Scheduler,
     Strict,
 )
-from verification.commands.common.task_progress import kept_results, kept_study, run_info, solve, worker_count
+from verification.commands.common.task_progress import (
+    executor_at,
+    kept_results,
+    kept_study,
+    run_info,
+    solve,
+    worker_count,
+)
 from verification.commands.common.terminal import print_error, print_json, print_out, print_warnings
 from verification.commands.common.terminal_bar import require_gmsh
 from verification.credibility import accuracy_study
@@ -62,6 +70,7 @@ def run(
     time_limit: float = 600.0,
     baseline: BaselineFolder = BASELINE,
     records: RecordsFolder = RECORDS,
+    scheduler: Scheduler = None,
     resume: Resume = False,
     fields: Flag = False,
     strict: Strict = False,
@@ -84,6 +93,7 @@ def run(
         verbose: Print the seconds and iterations of every source as the cases finish.
     """
     jobs, silent = worker_count(jobs, time_limit), quiet or as_json
+    output = output.absolute() if scheduler else output  # workers have folders of their own
     chosen = chosen_cases(cases)
     for case in chosen:
         if isinstance(case, Case):
@@ -93,7 +103,7 @@ def run(
     begin, started = time.perf_counter(), datetime.datetime.now(datetime.UTC)
     try:
         known = read_baseline(baseline)
-        with locked(output):
+        with executor_at(scheduler) as executor, locked(output):
             kept = kept_results(chosen, output, fields=fields) if resume else {}
             accuracy = kept_study(output) if resume and not cases else None
             tasks: list[Task[CaseResult | AccuracyStudy]] = [
@@ -101,10 +111,12 @@ def run(
             ]
             tasks += [accuracy_study.task(output)] if not cases and accuracy is None else []
             standing = cache(partial(_standing, chosen, records))
-            solved = solve(tasks, jobs, time_limit, silent, verbose=verbose, meanwhile=standing)
+            solved = solve(
+                tasks, jobs, time_limit, silent, executor=executor, verbose=verbose, meanwhile=standing
+            )
             found = kept | {one.name: one for one in solved if isinstance(one, CaseResult)}
             results = [found[case.name] for case in chosen]
-            info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs)
+            info = run_info(shlex.join(["coatcheck", "run", *cases]), started, jobs, scheduler)
             evidence = standing()
             tests = evidence.self_tests
             beside = regression(

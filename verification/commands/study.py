@@ -18,7 +18,8 @@ from rich.progress import TaskID
 from verification.commands.common.command_error import STOPPED, CommandError
 from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.named_files import path_of
-from verification.commands.common.shared_options import AsJson, Jobs, Output, Quiet, Strict
+from verification.commands.common.shared_options import AsJson, Jobs, Output, Quiet, Scheduler, Strict
+from verification.commands.common.task_progress import executor_at
 from verification.commands.common.terminal import print_error, print_json, print_out, print_warnings
 from verification.commands.common.terminal_bar import progress_bar, require_gmsh
 from verification.judging.verdict import Outcome
@@ -43,6 +44,7 @@ class Options:
     output: Output = Path("reports/study")
     """Directory of the table, PLAN.parquet, and of the cache."""
     jobs: Jobs = None
+    scheduler: Scheduler = None
     limit: int | None = None
     """Only the first so many points."""
     cross_check: bool = True
@@ -107,6 +109,7 @@ def init(kind: Literal["thickness", "load", "stiffness"], file: Path | None = No
 
 def _study(plan: str, options: Options, *, loads: bool) -> int:
     limit, output, silent = options.limit, options.output, options.quiet or options.as_json
+    output = output.absolute() if options.scheduler else output  # workers have folders of their own
     jobs = cores() if options.jobs is None else options.jobs
     if jobs < 1 or (limit is not None and limit < 1):
         raise CommandError(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
@@ -132,12 +135,11 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
     try:
         if not silent:
             sys.stderr.write(f"coatcheck: {_forecast(chosen, output, jobs, limit)}\n")
-        with _bars(silent) as (report, drawing):
-            came = run_study(chosen, output, jobs, limit=limit, report=report)
+        with executor_at(options.scheduler) as executor, _bars(silent) as (report, drawing):
+            again = partial(run_study, folder=output, jobs=jobs, executor=executor, report=report)
+            came = again(chosen, limit=limit)
             if loads and limit is None:
-                chosen, came = _extended(
-                    chosen, came, partial(run_study, folder=output, jobs=jobs, report=report)
-                )
+                chosen, came = _extended(chosen, came, again)
             facts = [
                 ("solves", f"{came.done} done, {came.kept} from the cache"),
                 ("duration", f"{time.perf_counter() - begin:.0f} s"),

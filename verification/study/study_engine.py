@@ -8,6 +8,7 @@ interruptions.
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator
+from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import groupby, takewhile
@@ -82,19 +83,20 @@ def run_study(
     folder: Path,
     jobs: int,
     *,
+    executor: Executor | None = None,
     limit: int | None = None,
     report: Report = lambda source, done, total: None,
 ) -> Outcome:
     """Solve the part of ``study`` that is not in the cache under ``folder`` and write its table.
 
-    jobs : processes side by side.   limit : only the first so many points.
+    jobs : processes side by side.   executor : as in ``run_tasks``.   limit : only the first so many points.
     Raises StoreError where ``folder`` cannot be written or another run holds it, KeyboardInterrupt after
     writing the table of the stored answers.
     """
     with locked(folder):
         run = _Run(study, folder, limit, report)
         try:
-            run.solve_missing(jobs)
+            run.solve_missing(jobs, executor)
             run.outcome.complete = limit is None
         finally:
             run.write_table()
@@ -119,7 +121,7 @@ class _Run:
         """Number of requested points that a solve covers."""
         return min(one.points, self.outcome.points - one.first)
 
-    def solve_missing(self, jobs: int) -> None:
+    def solve_missing(self, jobs: int, executor: Executor | None) -> None:
         """Solve what is not in the cache, equal solves once: first the curves, then their checks."""
         waiting: dict[str, list[Solve]] = {}
         for one in sorted(self.solves, key=lambda one: SOURCES.index(one.source)):
@@ -138,7 +140,7 @@ class _Run:
                 self._count(one)
 
         tasks = [self._task(equal[0]) for equal in waiting.values()]
-        run_tasks(tasks, jobs=jobs, time_limit=math.inf, finished=finished)
+        run_tasks(tasks, jobs=jobs, time_limit=math.inf, executor=executor, finished=finished)
 
     def _task(self, one: Solve) -> Task[str | None]:
         """Storing the answer to ``one``; its result is the reason why there is none, else None."""

@@ -10,6 +10,7 @@ from cyclopts import Parameter
 
 _BASELINE_HELP = "Directory of the baseline; that of the package unless given."
 _RECORDS_HELP = "Directory of the credibility records; that of the package unless given."
+_SCHEDULER_HELP = "Address of a Dask scheduler, HOST:PORT; its workers solve, and share the output directory."
 _JOBS_HELP = "Processes side by side; all cores unless given."
 
 Flag = Annotated[bool, Parameter(negative="")]
@@ -19,6 +20,7 @@ BaselineFolder = Annotated[
 ]
 RecordsFolder = Annotated[Path, Parameter(help=_RECORDS_HELP, show_default=False)]
 Jobs = Annotated[int | None, Parameter(name=["--jobs", "-j"], help=_JOBS_HELP)]
+Scheduler = Annotated[str | None, Parameter(help=_SCHEDULER_HELP)]
 Resume = Annotated[bool, Parameter(negative="", help="Keep the valid results in the output directory.")]
 Quiet = Annotated[bool, Parameter(name=["--quiet", "-q"], negative="", help="Print nothing but errors.")]
 Strict = Annotated[

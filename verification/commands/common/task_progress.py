@@ -1,7 +1,9 @@
 """Progress of tasks on the terminal; results of earlier runs that can be kept."""
 
 import datetime
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
 
@@ -31,6 +33,26 @@ def worker_count(jobs: int | None, time_limit: float) -> int:
     if jobs < 1 or not time_limit > 0:
         raise CommandError(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
     return jobs
+
+
+@contextmanager
+def executor_at(scheduler: str | None) -> Iterator[Executor | None]:
+    """The workers of the Dask scheduler at an address; None where none is given."""
+    if scheduler is None:
+        yield None
+        return
+    try:
+        from distributed import Client
+    except ImportError:
+        missing = "Dask is not installed here; python -m pip install 'coatcheck[cluster]'"
+        raise CommandError(f"--scheduler {scheduler}: {missing}") from None
+    try:
+        client = Client(scheduler, timeout=10, set_as_default=False)
+    except (OSError, ValueError) as error:
+        reason = f"no scheduler answers ({error}); start one with: dask scheduler"
+        raise CommandError(f"--scheduler {scheduler}: {one_line(reason)}") from None
+    with client:
+        yield client.get_executor()
 
 
 def kept_results(
@@ -64,12 +86,14 @@ def solve(
     time_limit: float,
     silent: bool,
     *,
+    executor: Executor | None = None,
     verbose: bool = False,
     meanwhile: Callable[[], object] = lambda: None,
 ) -> list[T]:
     """Run ``tasks`` with a progress bar and a line for each result, unless ``silent``.
 
-    verbose : print seconds, iterations and unknowns of every source.   meanwhile : as in ``run_tasks``.
+    verbose : print seconds, iterations and unknowns of every source.
+    executor, meanwhile : as in ``run_tasks``.
     """
     console = Console(stderr=True)
     bar = progress_bar(console, silent=silent)
@@ -92,7 +116,13 @@ def solve(
                     console.print(escape(_sources(result)), style="dim", highlight=False)
 
         return run_tasks(
-            tasks, jobs=jobs, time_limit=time_limit, started=started, finished=finished, meanwhile=meanwhile
+            tasks,
+            jobs=jobs,
+            time_limit=time_limit,
+            executor=executor,
+            started=started,
+            finished=finished,
+            meanwhile=meanwhile,
         )
 
 
@@ -108,7 +138,7 @@ def _sources(result: CaseResult) -> str:
     return "\n".join(lines)
 
 
-def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
+def run_info(command: str, started: datetime.datetime, jobs: int, scheduler: str | None = None) -> RunInfo:
     """Command, time, commit, machine and versions of the run that ends now."""
     return RunInfo(
         command=command,
@@ -116,6 +146,6 @@ def run_info(command: str, started: datetime.datetime, jobs: int) -> RunInfo:
         seconds=(datetime.datetime.now(datetime.UTC) - started).total_seconds(),
         jobs=jobs,
         commit=commit(),
-        machine=hardware(),
+        machine=hardware() + (f" with the workers of {scheduler}" if scheduler else ""),
         versions=versions(),
     )
