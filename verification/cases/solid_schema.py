@@ -83,7 +83,7 @@ class Coating(Limited, Stressed):
     @model_validator(mode="after")
     def _one_of_each(self) -> "Coating":
         if (self.layers is None) == isinstance(self.E, Course | Table):
-            raise ValueError("is graded: needs E as a course over the depth, with its number of layers")
+            raise ValueError("needs layers, of a graded E, a course over the depth, and of no other E")
         if self.thickness is not None and self.thickness_over_a_h is not None:
             raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
         return self

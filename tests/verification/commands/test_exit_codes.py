@@ -20,7 +20,7 @@ from verification.running.pool.process_pool import run_tasks
     [
         (["run", "no_such_case"], "no_such_case"),
         (["run", "."], "directory"),
-        (["run", "bad.toml"], "problem.load"),
+        (["run", "bad.toml"], "load must be above 0"),
         (["run", "01_uncoated_steel", "01_uncoated_steel"], "twice"),
         (["run", "--jobs", "0"], "--jobs = 0"),
         (["run", "--time-limit", "-1"], "--time-limit = -1"),
