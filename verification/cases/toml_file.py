@@ -115,7 +115,7 @@ def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checke
 
 
 def listed_errors(error: ValidationError, model: type[BaseModel]) -> str:
-    """All errors of a file in one line, LISTED at most, each with place and value; what a key was meant for."""
+    """All errors of a file in one line, LISTED at most, with place and value; what a key was meant for."""
     told: list[str] = []
     explained: set[str] = set()
     found = error.errors(include_url=False)
