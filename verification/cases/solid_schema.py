@@ -83,7 +83,11 @@ class Coating(Limited, Stressed):
     @model_validator(mode="after")
     def _one_of_each(self) -> "Coating":
         if (self.layers is None) == isinstance(self.E, Course | Table):
-            raise ValueError("is graded: needs E as a course over the depth, with its number of layers")
+            raise ValueError(
+                "is graded: give layers, the number of its sub-layers, such as 20, beside the course of E"
+                if self.layers is None
+                else "has layers but one E; leave layers out, or give E as a course over the depth"
+            )
         if self.thickness is not None and self.thickness_over_a_h is not None:
             raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
         return self

@@ -17,7 +17,7 @@ MAX_BYTES = 250_000
 MAX_DOTS = 250
 MAX_NAME = 100
 NO_SOURCE = "no source stated"
-LISTED = 6  # errors of a file in one message
+LISTED = 20  # errors of a file in one message; a file of a thousand is not one with slips
 # What people write for a key; as ``meant`` of an option in commands.toml.
 _SYNONYMS = {
     "young": "E",
@@ -115,7 +115,7 @@ def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checke
 
 
 def listed_errors(error: ValidationError, model: type[BaseModel]) -> str:
-    """All errors of a file in one line, six at most, each with place and value; what a key was meant for."""
+    """All errors of a file in one line, LISTED at most, with place and value; what a key was meant for."""
     told: list[str] = []
     explained: set[str] = set()
     found = error.errors(include_url=False)

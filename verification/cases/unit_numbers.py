@@ -149,7 +149,7 @@ def _form(text: str, unit: str) -> str:
     if unit == "m" and re.fullmatch(rf"{NUMBER} *(?:\"|\u201d|\u2033|'')", text):
         return f'; write "{re.match(NUMBER, text)[0]} inch"'  # type: ignore[index]
     if unit == "m" and (found := re.fullmatch(rf"(?:d|D|dia\w*|Ø)\s*=?\s*({NUMBER}.*)", text)):
-        return f'; give it as diameter = "{found[1]}"'
+        return f'; give it as diameter = "{found[1]}"' + _form(found[1], unit)
     if _RANGE.fullmatch(text):
         course = '; a graded coating has E = { course = "linear", top = "130 GPa", base = "300 GPa" }'
         return "; give one value" + (course if unit == "Pa" else "")

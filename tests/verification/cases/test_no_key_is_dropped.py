@@ -58,10 +58,10 @@ ON_BALL |= {"problem.ball.coatings.expansion": "9e-6"}
 GRADED = '{ course = "linear", top = 4e11, base = 2e11 }'
 TABLE = "{ depth = [0.0, 0.5, 1.0], E = [4e11, 3e11, 2e11] }"
 LAYERS = {"problem.coatings.layers": "4"}
-ELLIPSE = {"ball: leave": None, "problem.radius": None, "problem.indenter.shape": '"ellipsoid"'}
-LOBES = {"ball: leave": None, "problem.indenter.shape": '"lobes"', "problem.indenter.lobes": "3"}
+ELLIPSE = {"problem.ball": None, "problem.radius": None, "problem.indenter.shape": '"ellipsoid"'}
+LOBES = {"problem.ball": None, "problem.indenter.shape": '"lobes"', "problem.indenter.lobes": "3"}
 LOBES |= {"problem.indenter.amplitude": "1e-9", "problem.indenter.at": "1e-5"}
-SPHERES = {"ball: leave": None, "problem.indenter.shape": '"asperities"'}
+SPHERES = {"problem.ball": None, "problem.indenter.shape": '"asperities"'}
 CLAIMED = {"claim": CLAIM}
 # Each key: what stands beside it, two values that have to give different work.
 KEYS = {

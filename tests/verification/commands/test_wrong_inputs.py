@@ -116,6 +116,11 @@ TYPED = [
     ("20 N", "-20 N", "load must be above 0, not '-20 N'"),
     ("10 mm", "1/4 in", f"{NO_LENGTH} '1/4 in'; write the fraction as \"0.25 in\""),
     ("10 mm", "d = 6 mm", f"{NO_LENGTH} 'd = 6 mm'; give it as diameter = \"6 mm\""),
+    (
+        "10 mm",
+        "d = 1/4 in",
+        f"{NO_LENGTH} 'd = 1/4 in'; give it as diameter = \"1/4 in\"; write the fraction as \"0.25 in\"",
+    ),
     ("210 GPa", "1.3505 210 GPa", f'substrate, E {NO_STRESS} \'1.3505 210 GPa\'; give "210 GPa" alone, and a '
      'name as name = "..."'),
     ("450 GPa", "130-300 GPa", f"coating 1, E {NO_STRESS} '130-300 GPa'; give one value{COURSE}"),

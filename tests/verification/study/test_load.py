@@ -195,8 +195,8 @@ def _closed(request, f):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ("count = 5", "count = 3", "sweep.load.count"),
-        ("from = 4", "from = 40", "sweep.load"),
+        ("count = 5", "count = 3", "sweep, load, count"),
+        ("from = 4", "from = 40", "sweep, load"),
         ("from = 4", 'from = "4 Pa"', "'Pa'"),
         ("coating = {", BALL + "coating = {", "coatings"),
         ("2e-5", "2e-8", "value 1"),

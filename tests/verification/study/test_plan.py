@@ -68,9 +68,13 @@ def test_bad_study_is_one_sentence_with_file_and_key(old, new, said):
 
 
 def test_all_errors_of_a_file_are_one_message():
-    text = STUDY.replace("nu = 0.25", "nu = 0.5").replace("load = 20.0", "load = -1.0")
+    text = STUDY.replace("nu = 0.25", "nu = 0.6").replace("load = 20.0", "load = -1.0")
     text = text.replace("cross_check = 5", "cross_check = 2.5")
     with pytest.raises(CaseError) as caught:
         parse_study(text.encode(), PATH)
+    unknown = [f"surplus_{k}" for k in range(7)]
+    with pytest.raises(CaseError) as listed:
+        parse_study(("".join(f"{key} = 1\n" for key in unknown) + text).encode(), PATH)
+    assert all(f"{key} is an unknown key" in str(listed.value) for key in unknown)
     for key in ("coating, nu", "load", "sweep, cross_check"):
         assert key in str(caught.value)
