@@ -29,7 +29,10 @@ def pool(stack: ExitStack) -> tuple[Executor, list[int]]:
     executor = stack.enter_context(ProcessPoolExecutor(2, mp_context=get_context("spawn")))
     for _ in range(2):
         executor.submit(abs, 1)
-    return executor, list(executor._processes)
+    pids = list(executor._processes)
+    # a worker killed while it waited for work keeps the lock of the queue: the other would never end
+    stack.callback(lambda: [process.kill() for process in (executor._processes or {}).values()])
+    return executor, pids
 
 
 def cluster(stack: ExitStack) -> tuple[Executor, list[int]]:
