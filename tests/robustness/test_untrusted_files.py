@@ -26,7 +26,7 @@ SOURCES = sorted(path for package in PACKAGES for path in (HOUSE / package).rglo
 UNSAFE = {"pickle", "cPickle", "dill", "cloudpickle", "joblib", "marshal", "shelve", "yaml", "xmlrpc"}
 CODE = {"eval", "exec", "compile", "__import__"}
 # A task goes to a child of this process through a pipe of its own: no file, nobody else's.
-PIPE = tuple(f"verification/running/pool/{name}.py" for name in ("process_pool", "fork_guard"))
+PIPE = tuple(f"verification/running/pool/{name}.py" for name in ("process_slot", "fork_guard"))
 
 
 def called(node: ast.Call) -> str:

@@ -231,7 +231,7 @@ def test_limits_of_thickness_hold_where_the_message_puts_them(factor, fits):
     stiff = "E = 420e9; nu = 0.3; thickness = {}"
     with pytest.raises(CaseError) as error:
         parsed(case_text(stiff.format("9e-3"), E="1e9", load="1e-9", radius="10"))
-    ((most, unit),) = re.findall(r", [\d.e-]+ \w+ to ([\d.e+]+) (\w+)", str(error.value))
+    ((most, unit),) = re.findall(r"support [\d.e-]+ \w+ to ([\d.e+]+) (\w+)", str(error.value))
     text = case_text(stiff.format(factor * float(most) * LENGTHS[unit]), E="1e9", load="1e-9", radius="10")
     if fits:
         assert parsed(text).problem.coatings

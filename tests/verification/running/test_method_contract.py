@@ -16,7 +16,7 @@ from verification.cases.case_file import read_case, shipped_cases
 from verification.problem.either_body import on_body
 from verification.sources.exact_sources import solve_exactly
 from verification.sources.method_sources import solve_semianalytic
-from verification.sources.references import integral_equation
+from verification.sources.references import solids_in_contact
 from verification.sources.references.layered_half_space import LayeredHalfSpace
 
 STEP = 1.01
@@ -103,7 +103,7 @@ def test_the_response_of_the_layers_acts_as_in_the_exact_contact(case, solved, e
         pytest.skip("no body is coated")
     M = LayeredHalfSpace.compliance.fget
     monkeypatch.setattr(LayeredHalfSpace, "compliance", property(lambda one: 1 + STEP * (M(one) - 1)))
-    assert integral_equation.LayeredHalfSpace is LayeredHalfSpace
+    assert solids_in_contact.LayeredHalfSpace is LayeredHalfSpace
     wanted = changes(exact, solve_exactly(case.problem, NUMERICS))
     monkeypatch.setattr(frf, "compliance_excess", times(frf.compliance_excess))
     found = changes(solved, solve_semianalytic(case.problem, NUMERICS))
