@@ -39,6 +39,7 @@ UNSEEN = {
     "stiffness_step": "the stated uncertainty grows with the step and covers it, below the cap",
     "coarser_levels_misplaced": "only the uncertainty next to the edge grows, which exceeds the cap anyway",
     "refined_grid_grows": "the numbers move by 2e-8; only the uncertainty next to the edge grows",
+    "levels_alike": "the pressure leaves its uncertainty at the same x/a alone; a guest is asked at fixed x",
     "hoop_traction_on_the_surface": "no shear is asked on the surface off y = 0, where q = f p is given",
 }
 
