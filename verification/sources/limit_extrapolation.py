@@ -25,8 +25,8 @@ def extrapolated(problem: CoatedContact | PrescribedLoad, solve: Solver) -> Solu
     """The solution with nu = 1/2 or near it; that of ``solve`` for a problem without such a layer.
 
     The parabola through t = 1, 2, 3 at t = 0, with nu - step t in those layers: step = 1e-3, or ``CONFINED``
-    (h/a)^2 where that is less. Its distance from the straight line through t = 1 and 2, the second
-    difference, is part of the uncertainty.
+    (h/a)^2 where that is less; the straight line through t = 1 and 2 where the two differ by less than the
+    parabola adds to the numerical uncertainty. Their distance, the second difference, is part of it.
     """
     if short_of_limit(problem, 1) == problem:
         return solve(problem)
@@ -63,7 +63,7 @@ def _thinnest(problem: CoatedContact | PrescribedLoad) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Extrapolated(Sampled):
-    """3 f(1) - 3 f(2) + f(3), uncertain by 3 U(1) + 3 U(2) + U(3) + |second difference|, for each f.
+    """Each quantity f by ``_limit`` of f(1), f(2), f(3) and their uncertainties.
 
     Fields are extrapolated at the same x/a, of which they are smooth functions at the edge too; that of the
     extrapolated radius is uncertain, which moves fields beside the edge.
@@ -77,15 +77,13 @@ class Extrapolated(Sampled):
         """Value and uncertainty in the limit; no uncertainty where the solutions state none."""
         three, a = (self.near, self.further, self.third), 1.0 if points is None else self.contact_radius
         places = [_scaled(points, float(one.contact_radius) / a) for one in three]
-        (f, U), (g, V), (h, W) = (
-            one.sample(at, quantity, uncertainty) for one, at in zip(three, places, strict=True)
-        )
+        (f, U), (g, V), (h, W) = (one.sample(at, quantity) for one, at in zip(three, places, strict=True))
         if f is None:
             return UNSUPPORTED
-        value = 3 * f - 3 * g + h
-        if U is None or V is None or W is None:
+        value, own, bend = _limit((f, g, h), (U, V, W))
+        if own is None or not uncertainty:
             return Answer(value)
-        U = 3 * U + 3 * V + W + np.abs(f - 2 * g + h)
+        U = own + bend
         if points is None:
             return Answer(value, U)
         radii = [float(one.contact_radius) for one in three]
@@ -113,10 +111,25 @@ class Extrapolated(Sampled):
             )
             if None in stated:
                 return None
-            own, bend = 3 * stated[0] + 3 * stated[1] + stated[2], abs(values[0] - 2 * values[1] + values[2])
-            rows += [(name, "the three solutions", own), (name, "limit", bend)]
-            total[name] = own + bend
+            _, own, bend = _limit(values, stated)
+            assert own is not None
+            rows += [(name, "the three solutions", float(own)), (name, "limit", float(bend))]
+            total[name] = float(own + bend)
         return Uncertainty(**total, budget=tuple(rows))
+
+
+def _limit(values: tuple[Any, Any, Any], stated: tuple[Any, Any, Any]) -> tuple[Any, Any | None, Any]:
+    """Value at t = 0, the numerical uncertainty of it, None where none is ``stated``, the second difference.
+
+    Parabola: 3 f(1) - 3 f(2) + f(3), 3 U(1) + 3 U(2) + U(3).   Line: 2 f(1) - f(2), 2 U(1) + U(2).
+    """
+    (f, g, h), (U, V, W) = values, stated
+    parabola, bend = 3 * f - 3 * g + h, np.abs(f - 2 * g + h)
+    if U is None or V is None or W is None:
+        return parabola, None, bend
+    straight = bend < U + 2 * V + W
+    own = np.where(straight, 2 * U + V, 3 * U + 3 * V + W)
+    return np.where(straight, 2 * f - g, parabola), own, bend
 
 
 def _scaled(points: Points | None, ratio: float) -> Points | None:
