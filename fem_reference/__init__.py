@@ -7,12 +7,12 @@
 True
 """
 
-from .contact_solver import solve, solve_prescribed
-from .levels import NotConverged
-from .off_axis import PressedSolid, check_pressure
-from .shaped_contact import ShapedContact, solve_shape
-from .solved_contact import Solution
-from .vtu import write_vtu
+from fem_reference.contact.levels import NotConverged
+from fem_reference.contact_solver import solve, solve_prescribed
+from fem_reference.not_round.off_axis import PressedSolid, check_pressure
+from fem_reference.not_round.shaped_contact import ShapedContact, solve_shape
+from fem_reference.solved_contact import Solution
+from fem_reference.vtu import write_vtu
 
 __all__ = [
     "NotConverged",

@@ -9,8 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from .axisymmetric import Discretisation
-from .location import LocatedPoints, Uncached
+from fem_reference.elasticity.axisymmetric import Discretisation
+from fem_reference.meshing.location import LocatedPoints, Uncached
 
 # Shares of the largest difference in rings of triangles, or cells of a line, by their distance from a point.
 REACH = (1.0, 1.0, 0.5)

@@ -11,17 +11,23 @@ from itertools import pairwise
 
 import numpy as np
 
-from .axisymmetric import Discretisation
-from .estimate import Estimates, contact_estimates, estimates
-from .fixed_radius import complementarity
-from .levels import NotConverged, companion_grading, final_grading, meshes_at, solve_levels
-from .loading import solve_traction
-from .mesh import Grading
-from .recovery import HarmonicField
-from .scaling import Coatings, LayeredSolid, Units
-from .solved_contact import Diagnostics, Solution
-from .state import ElasticState
-from .validation import (
+from fem_reference.contact.fixed_radius import complementarity
+from fem_reference.contact.levels import (
+    NotConverged,
+    companion_grading,
+    final_grading,
+    meshes_at,
+    solve_levels,
+)
+from fem_reference.elasticity.axisymmetric import Discretisation
+from fem_reference.elasticity.loading import solve_traction
+from fem_reference.elasticity.recovery import HarmonicField
+from fem_reference.elasticity.state import ElasticState
+from fem_reference.estimate import Estimates, contact_estimates, estimates
+from fem_reference.meshing.mesh import Grading
+from fem_reference.scaling import Coatings, LayeredSolid, Units
+from fem_reference.solved_contact import Diagnostics, Solution
+from fem_reference.validation import (
     check_ball,
     check_choice,
     check_materials,

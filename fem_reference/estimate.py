@@ -31,13 +31,13 @@ from functools import cached_property
 
 import numpy as np
 
-from .companion_points import REACH, ComparisonPoints, Pair, largest_around, samples
-from .fixed_radius import FixedRadiusContact
-from .levels import COMPANION
-from .location import LocatedPoints, Uncached
-from .recovery import TRACTIONS, HarmonicField
-from .scaling import Units
-from .state import ElasticState
+from fem_reference.companion_points import REACH, ComparisonPoints, Pair, largest_around, samples
+from fem_reference.contact.fixed_radius import FixedRadiusContact
+from fem_reference.contact.levels import COMPANION
+from fem_reference.elasticity.recovery import TRACTIONS, HarmonicField
+from fem_reference.elasticity.state import ElasticState
+from fem_reference.meshing.location import LocatedPoints, Uncached
+from fem_reference.scaling import Units
 
 # Roache's factor of safety for two meshes; `python tests/tools alarms` counts how often it is too small.
 SAFETY = 3.0

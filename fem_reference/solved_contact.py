@@ -6,12 +6,12 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from .element_answer import ElementAnswer, PlainFields
-from .estimate import Estimates, Uncertainty
-from .location import SolidPoints, solid_points
-from .scaling import Units
-from .state import ElasticState
-from .validation import check_friction
+from fem_reference.elasticity.state import ElasticState
+from fem_reference.element_answer import ElementAnswer, PlainFields
+from fem_reference.estimate import Estimates, Uncertainty
+from fem_reference.meshing.location import SolidPoints, solid_points
+from fem_reference.scaling import Units
+from fem_reference.validation import check_friction
 
 AT_SINGULAR = 1e-8  # distance from a singular radius over that of the load
 

@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from .line_quadrature import gauss_legendre
+from fem_reference.elasticity.line_quadrature import gauss_legendre
 
 MAX_COATINGS = 50
 MAX_CONTRAST = 1e9

@@ -13,7 +13,7 @@ is an indenter with a round profile; with ``edge_correction=False`` the patches 
 '1.27 GPa'
 """
 
-from semianalytic.contact import NotConverged
+from semianalytic.patches.contact import NotConverged
 from semianalytic.solution import Diagnostics, Solution
 from semianalytic.solver import indent, solve, solve_prescribed
 from semianalytic.uncertainty import Uncertainty

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from semianalytic.response import Response, response
+from semianalytic.coefficients.response import Response, response
 
 COARSEST = 33  # patches a side of the coarsest grid
 

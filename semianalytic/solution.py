@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import distance_transform_cdt, maximum_filter
 
-from semianalytic import fields
 from semianalytic.inputs import Body, check_finite
-from semianalytic.level import Level, interpolated
-from semianalytic.neighbours import Neighbours
 from semianalytic.patch_answer import PatchAnswer, PatchPoints
+from semianalytic.patches.level import Level, interpolated
+from semianalytic.patches.neighbours import Neighbours
+from semianalytic.stresses import fields
 from semianalytic.uncertainty import AT_EDGE, SMOOTH, Uncertainty, safety, unsettled
 
 Array = NDArray[np.floating]

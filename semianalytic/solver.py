@@ -12,10 +12,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import contact, convolution, influence, nested, prescribed, uncertainty
-from semianalytic.contact import NotConverged
-from semianalytic.grid import Grid, odd, touches_rim
-from semianalytic.indenter_profile import Shape, profile_of
+from semianalytic import uncertainty
+from semianalytic.coefficients import influence
 from semianalytic.inputs import (
     Body,
     Numerics,
@@ -25,8 +23,12 @@ from semianalytic.inputs import (
     check_positive,
     check_truth_value,
 )
-from semianalytic.level import Indenter, Level
-from semianalytic.neighbours import Neighbours, Sphere, hertz_radius
+from semianalytic.patches import contact, convolution, nested, prescribed
+from semianalytic.patches.contact import NotConverged
+from semianalytic.patches.grid import Grid, odd, touches_rim
+from semianalytic.patches.indenter_profile import Shape, profile_of
+from semianalytic.patches.level import Indenter, Level
+from semianalytic.patches.neighbours import Neighbours, Sphere, hertz_radius
 from semianalytic.solution import Solution
 from semianalytic.uncertainty import WIDER, Uncertainty
 

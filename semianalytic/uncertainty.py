@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from semianalytic import convolution, influence
-from semianalytic.grid import odd
+from semianalytic.coefficients import influence
 from semianalytic.inputs import Body, Numerics
-from semianalytic.level import Indenter, Level
+from semianalytic.patches import convolution
+from semianalytic.patches.grid import odd
+from semianalytic.patches.level import Indenter, Level
 
 WIDER = 1.25  # the box that tests the domain over the box in use
 SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge

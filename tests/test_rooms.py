@@ -82,9 +82,7 @@ def test_no_room_holds_more_than_thirteen_modules():
             if folder.parent not in (ROOT, ROOT / "verification") and ROOT in folder.parents:
                 held[folder.parent].add(folder.name)
     sizes = {folder.relative_to(ROOT).as_posix(): len(names) for folder, names in held.items()}
-    # the two methods are flat packages: users and faults name their modules, as in ``semianalytic.rings``
-    rooms = {name: size for name, size in sizes.items() if name.startswith("verification/")}
-    assert {name: size for name, size in rooms.items() if size > MOST_IN_A_FOLDER} == {}
+    assert {name: size for name, size in sizes.items() if size > MOST_IN_A_FOLDER} == {}
 
 
 def test_no_file_is_longer_than_one_can_read_at_once():

@@ -15,8 +15,8 @@ from code_checked.manufactured_solutions import (
 from skfem import Basis, BilinearForm, ElementVector
 from skfem.helpers import ddot, sym_grad, trace
 
-from fem_reference.axisymmetric import ELEMENTS, Discretisation, strain_operator
-from fem_reference.linear_system import constrained_solve
+from fem_reference.elasticity.axisymmetric import ELEMENTS, Discretisation, strain_operator
+from fem_reference.elasticity.linear_system import constrained_solve
 
 
 def lame(E, nu):

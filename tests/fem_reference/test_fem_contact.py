@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from fem_reference import solve, solve_prescribed
-from fem_reference.axisymmetric import Discretisation
-from fem_reference.fixed_radius import _even_at_the_axis, complementarity, solve_at_radius
-from fem_reference.mesh import Grading, meridian_mesh
+from fem_reference.contact.fixed_radius import _even_at_the_axis, complementarity, solve_at_radius
+from fem_reference.elasticity.axisymmetric import Discretisation
+from fem_reference.meshing.mesh import Grading, meridian_mesh
 from fem_reference.scaling import LayeredSolid
 from verification.sources.references.hamilton import Hamilton
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from fem_reference import solve
-from fem_reference.axisymmetric import Discretisation
-from fem_reference.mesh import EDGE_SIZE, Grading, meridian_mesh
-from fem_reference.recovery import EDGE_SERIES, HarmonicField
+from fem_reference.elasticity.axisymmetric import Discretisation
+from fem_reference.elasticity.recovery import EDGE_SERIES, HarmonicField
+from fem_reference.meshing.mesh import EDGE_SIZE, Grading, meridian_mesh
 from verification.problem.point_answers import Points
 from verification.sources.references import hamilton, integral_equation
 

@@ -5,7 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from fem_reference import NotConverged, levels, solve
+from fem_reference import NotConverged, solve
+from fem_reference.contact import levels
 from fem_reference.contact_solver import CONTRASTS, QUALITY, _size
 from verification.problem.point_answers import Points
 

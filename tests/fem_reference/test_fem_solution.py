@@ -9,10 +9,10 @@ import pytest
 
 from fem_reference import solve, solve_prescribed
 from fem_reference.companion_points import samples
+from fem_reference.contact.fixed_radius import solve_at_radius
+from fem_reference.contact.levels import COMPANION, companion_grading, final_grading
+from fem_reference.elasticity.state import ElasticState
 from fem_reference.estimate import SAFETY, contact_estimates, estimates
-from fem_reference.fixed_radius import solve_at_radius
-from fem_reference.levels import COMPANION, companion_grading, final_grading
-from fem_reference.state import ElasticState
 from verification.problem.point_answers import Points
 
 R, W, E, NU = 10e-3, 20.0, 210e9, 0.3

@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 
 from fem_reference import solve, write_vtu
-from fem_reference.gmsh_session import session
-from fem_reference.mesh import Grading, meridian_mesh
+from fem_reference.meshing.gmsh_session import session
+from fem_reference.meshing.mesh import Grading, meridian_mesh
 
 COARSE = Grading(size=0.6, edge_rate=0.6, edge_size=1e-3, axis_size=0.6, far_size=1.0)
 
@@ -199,7 +199,7 @@ def test_vtu_holds_layers_and_both_sides_of_the_interface(tmp_path):
 
 PIPE = """
 import os, signal, sys, threading
-from fem_reference.gmsh_session import session
+from fem_reference.meshing.gmsh_session import session
 def mesh():
     with session("one"):
         pass

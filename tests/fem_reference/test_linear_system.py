@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from code_checked.manufactured_solutions import MATERIALS, unit_square
 
-from fem_reference import linear_system, solve
-from fem_reference.axisymmetric import Discretisation
-from fem_reference.linear_system import constrained_solve
+from fem_reference import solve
+from fem_reference.elasticity import linear_system
+from fem_reference.elasticity.axisymmetric import Discretisation
+from fem_reference.elasticity.linear_system import constrained_solve
 
 
 def problem(harmonic, order=3):

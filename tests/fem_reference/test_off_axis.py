@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from fem_reference import check_pressure, solve_prescribed
-from fem_reference.harmonic_compliance import harmonic_compliance
-from fem_reference.loading import solve_traction
-from fem_reference.off_axis import AngularPressure, OffAxisFields, discretised
+from fem_reference.elasticity.loading import solve_traction
+from fem_reference.not_round.harmonic_compliance import harmonic_compliance
+from fem_reference.not_round.off_axis import AngularPressure, OffAxisFields, discretised
 from fem_reference.scaling import LayeredSolid
 from verification.problem.point_answers import Points
 from verification.sources.references.hertz_ellipse import HertzEllipse

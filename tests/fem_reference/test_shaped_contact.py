@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fem_reference import NotConverged, solve_shape
-from fem_reference.indenter_height import indenter_height
+from fem_reference.not_round.indenter_height import indenter_height
 from verification.problem.indenter_shape import height_of
 from verification.problem.point_answers import EDGE, Points
 from verification.sources.references.hertz_ellipse import pressed_ellipsoid

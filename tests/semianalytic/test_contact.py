@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from semianalytic import contact, convolution, halfspace, influence
+from semianalytic.coefficients import halfspace, influence
 from semianalytic.inputs import Body, Numerics
+from semianalytic.patches import contact, convolution
 
 N, D = 65, 2.4 / 65  # Hertz with E* = R = a = 1 on [-1.2, 1.2]^2
 X = (np.arange(N) - N // 2) * D

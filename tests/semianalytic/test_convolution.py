@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from semianalytic import convolution
+from semianalytic.patches import convolution
 
 RNG = np.random.default_rng(7)
 

@@ -5,7 +5,7 @@ from decimal import Decimal, getcontext
 import numpy as np
 import pytest
 
-from semianalytic.frf import compliance_excess, displacement_frf, stress_frf
+from semianalytic.coefficients.frf import compliance_excess, displacement_frf, stress_frf
 
 SOLIDS = {
     "stiff coating": (((4.0, 0.3, 1.0),), (1.0, 0.3)),

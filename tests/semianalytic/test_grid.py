@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from semianalytic.grid import Grid, Window, prolong, window_around
+from semianalytic.patches.grid import Grid, Window, prolong, window_around
 
 
 def _hertz(grid):

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from semianalytic import halfspace
-from semianalytic.point_force import (
+from semianalytic.coefficients import halfspace
+from semianalytic.coefficients.point_force import (
     combine_displacement,
     combine_stress,
     directions,

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy.special import gamma, hyp2f1
 
-from semianalytic.hankel import LONG, USUAL, hankel
-from semianalytic.inputs import Body
-from semianalytic.point_force import (
+from semianalytic.coefficients.hankel import LONG, USUAL, hankel
+from semianalytic.coefficients.point_force import (
     displacement_below,
     half_space_displacement,
     half_space_stress,
     stress_below,
 )
+from semianalytic.inputs import Body
 
 
 def laplace(m, n, r, L):

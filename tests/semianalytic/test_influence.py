@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.special import j0, sici
 
-from semianalytic import frf, halfspace, influence
+from semianalytic.coefficients import frf, halfspace, influence
+from semianalytic.coefficients.response import Response, response
 from semianalytic.inputs import Body, Numerics
-from semianalytic.response import Response, response
 
 SUBSTRATE = (210e9, 0.3)
 PLACES = [(0, 0), (1, 0), (2, 2), (6, 3), (13, 2), (30, 11)]

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from semianalytic.contact import Contact
-from semianalytic.grid import Grid, Window
 from semianalytic.inputs import Body, Numerics
-from semianalytic.level import Indenter, Level, LevelProblem
+from semianalytic.patches.contact import Contact
+from semianalytic.patches.grid import Grid, Window
+from semianalytic.patches.level import Indenter, Level, LevelProblem
 
 
 def test_noise_bounds_the_pressure_of_a_checkerboard():

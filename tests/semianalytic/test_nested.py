@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 import semianalytic
-from semianalytic import edge_correction, nested
+from semianalytic.edge import edge_correction
+from semianalytic.patches import nested
 
 R, W = 10e-3, 20.0
 STEEL = (210e9, 0.3)

@@ -5,10 +5,10 @@ from functools import partial
 import numpy as np
 import pytest
 
-from semianalytic import patch_field
 from semianalytic.inputs import Body
-from semianalytic.nodal_convolution import Lattice, at_points, between_sites
-from semianalytic.rings import Node
+from semianalytic.stresses import patch_field
+from semianalytic.stresses.nodal_convolution import Lattice, at_points, between_sites
+from semianalytic.stresses.rings import Node
 
 RNG = np.random.default_rng(5)
 LATTICE = Lattice(-0.7, 0.2, 0.1, 0.15, RNG.random((23, 18)))

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from semianalytic import patch_field, subsurface
 from semianalytic.inputs import Body
-from semianalytic.prescribed import Prescribed, patch_mean
-from semianalytic.rings import Disc
+from semianalytic.patches.prescribed import Prescribed, patch_mean
+from semianalytic.stresses import patch_field, subsurface
+from semianalytic.stresses.rings import Disc
 
 N = 129
 D = 2.24 / N

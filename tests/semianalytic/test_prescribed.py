@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from semianalytic.prescribed import Prescribed, deconvolve, patch_mean
+from semianalytic.patches.prescribed import Prescribed, deconvolve, patch_mean
 
 
 @pytest.mark.parametrize("power", [0, 0.5, 1, 3])

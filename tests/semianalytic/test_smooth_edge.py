@@ -6,10 +6,12 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 import semianalytic
-from semianalytic import convolution, influence, smooth_edge
-from semianalytic.edge_shape import EVEN, FULL, ROUND, Shape
-from semianalytic.grid import Grid
+from semianalytic.coefficients import influence
+from semianalytic.edge import smooth_edge
+from semianalytic.edge.edge_shape import EVEN, FULL, ROUND, Shape
 from semianalytic.inputs import Body, Numerics
+from semianalytic.patches import convolution
+from semianalytic.patches.grid import Grid
 from verification.problem.point_answers import EDGE, Points
 
 STEEL = (210e9, 0.3)

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 from scipy.special import jv
 
-from semianalytic.frf import displacement_frf, stress_frf
-from semianalytic.inputs import Body
-from semianalytic.point_force import (
+from semianalytic.coefficients.frf import displacement_frf, stress_frf
+from semianalytic.coefficients.point_force import (
     combine_displacement,
     combine_stress,
     directions,
     displacement_below,
     stress_below,
 )
+from semianalytic.inputs import Body
 
 SUBSTRATE = (210e9, 0.3)
 FRICTION = 0.5

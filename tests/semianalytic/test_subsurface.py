@@ -5,18 +5,18 @@ import pytest
 from numpy.polynomial import legendre
 from scipy.special import ellipeinc, ellipkinc, jv, spherical_jn
 
-from semianalytic import subsurface
-from semianalytic.edge_shape import EVEN, FULL, Shape
-from semianalytic.frf import displacement_frf, stress_frf
-from semianalytic.inputs import Body
-from semianalytic.point_force import (
+from semianalytic.coefficients.frf import displacement_frf, stress_frf
+from semianalytic.coefficients.point_force import (
     combine_displacement,
     combine_stress,
     directions,
     half_space_displacement,
     half_space_stress,
 )
-from semianalytic.rings import Disc, SmoothContour, rings_of
+from semianalytic.edge.edge_shape import EVEN, FULL, Shape
+from semianalytic.inputs import Body
+from semianalytic.stresses import subsurface
+from semianalytic.stresses.rings import Disc, SmoothContour, rings_of
 from verification.sources.references.hamilton import Hamilton
 
 NU, F = 0.3, 0.4

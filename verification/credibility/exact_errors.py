@@ -118,9 +118,10 @@ def _patch_error(problem: CoatedContact, exact: HankelField) -> float:
 
     They are summed over the patches, as under a rough indenter, in place of rings around each point.
     """
-    from semianalytic import patch_field, prescribed
-    from semianalytic.grid import Grid
     from semianalytic.inputs import Body
+    from semianalytic.patches import prescribed
+    from semianalytic.patches.grid import Grid
+    from semianalytic.stresses import patch_field
 
     a = exact.pressure.a
     grid = Grid(PATCHES, 2.04 * a / PATCHES)
@@ -137,9 +138,10 @@ def _deflection_error(problem: CoatedContact, exact: HankelField) -> float:
 
     Influence coefficients and DC-FFT alone, off the edge, where constant patches are of third order.
     """
-    from semianalytic import convolution, influence, prescribed
-    from semianalytic.grid import Grid
+    from semianalytic.coefficients import influence
     from semianalytic.inputs import Body, Numerics
+    from semianalytic.patches import convolution, prescribed
+    from semianalytic.patches.grid import Grid
 
     a = exact.pressure.a
     grid = Grid(PATCHES, 2.04 * a / PATCHES, quarter=True)
@@ -159,8 +161,9 @@ def convolution_errors(problem: CoatedContact, solid: str) -> list[ExactError]:
 
     No contact loads the patches at the rim, from which a padding that is too short wraps around.
     """
-    from semianalytic import convolution, influence
+    from semianalytic.coefficients import influence
     from semianalytic.inputs import Body, Numerics
+    from semianalytic.patches import convolution
 
     patches, body = 31, Body(problem.coatings, problem.substrate, 0.0, None)
     K = influence.surface_coefficients(patches, problem.a_h / patches, body, Numerics())

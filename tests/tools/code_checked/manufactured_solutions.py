@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem import Basis, MeshTri
 
-from fem_reference.axisymmetric import ELEMENTS, Discretisation, elasticity
-from fem_reference.linear_system import constrained_solve
-from fem_reference.mesh import MeridianMesh
+from fem_reference.elasticity.axisymmetric import ELEMENTS, Discretisation, elasticity
+from fem_reference.elasticity.linear_system import constrained_solve
+from fem_reference.meshing.mesh import MeridianMesh
 from verification.evidence.code_record import DesignOrder
 from verification.problem.array_types import Array
 

@@ -101,7 +101,7 @@ def test_faults_stay_where_they_are_when_the_source_is_reformatted_and_most_when
 
 
 def test_a_function_imported_by_name_is_exchanged_there_too():
-    from fem_reference import linear_system, loading
+    from fem_reference.elasticity import linear_system, loading
 
     change = Change("fem_reference:constrained_solve", "factor(b - A @ found)", "2 * factor(b - A @ found)")
     with planted((change,)):

@@ -11,7 +11,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from semianalytic import frf, influence, neighbours, point_force, subsurface
+from semianalytic.coefficients import frf, influence, point_force
+from semianalytic.patches import neighbours
+from semianalytic.stresses import subsurface
 from verification.cases.case_file import read_case, shipped_cases
 from verification.problem.either_body import on_body
 from verification.sources.exact_sources import solve_exactly

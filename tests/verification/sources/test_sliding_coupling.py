@@ -8,7 +8,7 @@ from scipy import fft
 from scipy.sparse.linalg import LinearOperator, gmres
 from scipy.special import j0, j1
 
-from semianalytic import frf
+from semianalytic.coefficients import frf
 from verification.problem.coated_contact import CoatedContact, keywords
 from verification.sources.assumptions.sliding_coupling import SlidingExpansion, coupling, first_harmonic
 from verification.sources.references import integral_equation

@@ -6,9 +6,9 @@ from true_sphere import SphereOnHalfSpace
 
 import fem_reference
 import semianalytic
-from fem_reference.axisymmetric import Discretisation
-from fem_reference.fixed_radius import solve_at_radius
-from fem_reference.mesh import Grading, meridian_mesh
+from fem_reference.contact.fixed_radius import solve_at_radius
+from fem_reference.elasticity.axisymmetric import Discretisation
+from fem_reference.meshing.mesh import Grading, meridian_mesh
 from fem_reference.scaling import LayeredSolid
 from verification.sources.references import integral_equation
 from verification.sources.references.integral_equation import PARABOLA, SPHERE

@@ -46,7 +46,7 @@ def conversion_errors(
     The grid fits the contact; the patches judged are the loaded one, some along a row, some along the
     diagonal, out to the corner.
     """
-    from semianalytic import frf, influence
+    from semianalytic.coefficients import frf, influence
     from semianalytic.inputs import Numerics
 
     a = solve_exactly(problem, {"estimate_uncertainty": False}).contact_radius
@@ -81,7 +81,7 @@ def conversion_errors(
 
 def coefficient_error(problem: CoatedContact, side: float, patches: int = 33) -> float:
     """Largest |K - K_exact| over the largest K, of coefficients by default on patches of ``side`` [m]."""
-    from semianalytic import influence
+    from semianalytic.coefficients import influence
     from semianalytic.inputs import Numerics
 
     places = _places(patches)
@@ -96,7 +96,8 @@ def influence_coefficients(solution: Solution, source: str, problem: CoatedConta
     ``surface_coefficients`` is called as the solution calls it: on its grid, for both bodies. The quadrature
     is that of the response of the layers in the references, around the edge of each patch.
     """
-    from semianalytic import influence, smooth_edge
+    from semianalytic.coefficients import influence
+    from semianalytic.edge import smooth_edge
     from semianalytic.inputs import Numerics
 
     body, stated, parts = _body(problem), solution.diagnostics, smooth_edge.PARTS

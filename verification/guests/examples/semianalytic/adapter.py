@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 import semianalytic
-from semianalytic.influence import surface_coefficients
+from semianalytic.coefficients.influence import surface_coefficients
 from semianalytic.inputs import Body, Numerics
 from verification.problem.array_types import Array, Coatings
 

@@ -1,0 +1,1 @@
+"""Linear elasticity on the meridian plane: assembly, solution, loads, recovered fields."""

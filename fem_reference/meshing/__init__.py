@@ -1,0 +1,1 @@
+"""Triangles of the meridian plane and where points lie in them."""

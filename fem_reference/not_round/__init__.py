@@ -1,0 +1,1 @@
+"""Contacts that are not round, by angular harmonics."""

@@ -1,0 +1,306 @@
+"""Contact of an indenter that is no sphere, by the compliance of finite elements.
+
+The pressure of another method is the start; it is corrected until the gap that the elements find below the
+indenter vanishes (``star_contact``), on a mesh and on a coarser companion. So the part of it that smooth
+corrections do not reach is the other method's, and what that leaves of the gap counts as an uncertainty.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from fem_reference.contact.levels import NotConverged
+from fem_reference.element_answer import ElementAnswer, ElementPoints
+from fem_reference.estimate import Uncertainty
+from fem_reference.meshing.mesh import surface_size
+from fem_reference.not_round.harmonic_compliance import DENSITY, harmonic_compliance
+from fem_reference.not_round.indenter_height import Height, Indenter, indenter_height
+from fem_reference.not_round.off_axis import WITHIN, OffAxisFields, PressedSolid, discretised
+from fem_reference.not_round.star_contact import Corrected, StarPressure, corrected
+from fem_reference.scaling import Coatings, LayeredSolid, Units
+from fem_reference.validation import check_choice, check_materials, check_positive, check_proportions
+
+MARGIN = 1.04  # of the contact up to the last node below the pressure, and as much before the first
+WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
+QUALITIES = {"fast": (0.5, 0.12, 120), "default": (0.44, 0.06, 240), "fine": (0.4, 0.05, 288)}
+# Times the number of waves as wide as the contact at its end on y = 0, as deep inside as the triangles there.
+AT_END = 5.0
+STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish
+WAVES = 4e-5  # of the peak, by short waves of the pressure given: 5e-5 in one of 30 ellipses, on both meshes
+SAFETY = 2.0  # of the change from the companion
+# times as much on the axis, where integrals in r dr hold the fields least; so far around it
+AXIS = 2.25, 0.15
+RESOLVED = 1 / 8  # of an element's width
+COARSER = 1.3  # triangles of the companion over those of the mesh
+CORRECTING = 96  # of the harmonics, that correct the pressure
+FEWER = 0.7  # of these, for the change by what is beyond them
+TYPICAL = 97  # per cent of points below the contact whose stress changes less from the companion
+SAMPLES = 8, 3, 7  # of such points by radius, angle and depth
+
+
+@dataclass(frozen=True)
+class ShapedDiagnostics:
+    """How the contact was reached.
+
+    steps : corrections of the pressure.  harmonics : the last one.  dofs, triangles : of the finer mesh
+    residual_gap : root mean square, weighted with the pressure, of the gap inside over the approach
+    residual_load : relative error of the load
+    """
+
+    steps: int
+    harmonics: int
+    dofs: int
+    triangles: int
+    residual_gap: float
+    residual_load: float
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class ShapedContact(PressedSolid):
+    """Contact under an indenter of any shape, even in y; x along sliding, z into the solid, SI.
+
+    contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
+    uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
+    typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
+    """
+
+    contact_radius: float
+    approach: float
+    peak_pressure: float
+    extent_x: float
+    extent_y: float
+    surface_nodes: np.ndarray
+    diagnostics: ShapedDiagnostics
+    uncertainty: Uncertainty | None
+    extent_uncertainty: tuple[float, float] | None
+    height: Height = field(repr=False)
+    typical: float = 0.0
+    frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
+
+    def sample(self, points: Any, quantity: str, uncertainty: bool = True) -> ElementAnswer:
+        """Value of a quantity at points, with its uncertainty when it was estimated.
+
+        Arguments as of ``PressedSolid.sample``; a scalar is contact_radius, approach, peak_pressure, extent_x
+        or extent_y. The stress has the error of the pressure too, the displacement that of the approach.
+        """
+        stated = uncertainty and self.uncertainty is not None and self._coarse is not None
+        scalars = ("contact_radius", "approach", "peak_pressure", "extent_x", "extent_y")
+        if quantity in scalars:
+            return ElementAnswer(
+                getattr(self, quantity), self._errors[scalars.index(quantity)] if stated else None
+            )
+        if quantity == "pressure":
+            return self._pressure(points, stated)
+        value, U = super().sample(points, quantity, stated)
+        if not stated or U is None:
+            return ElementAnswer(value)
+        if quantity == "displacement":
+            return ElementAnswer(value, U + self._errors[1])
+        x, y = points.x, points.y
+        smeared = np.where(np.asarray(points.z) == 0, self._smeared(x, y), 0.0)
+        distance = np.hypot(x, y) / (AXIS[1] * self._units.length)
+        safety = SAFETY * (1 + (AXIS[0] - 1) * np.maximum(1 - distance, 0))
+        floor = self._errors[2] + smeared
+        return ElementAnswer(value, np.maximum(safety * U, SAFETY * self.typical) + floor)
+
+    @property
+    def _errors(self) -> tuple[float, ...]:
+        """Uncertainties of contact radius, approach, peak pressure and both extents."""
+        one, extents = self.uncertainty, self.extent_uncertainty
+        assert one is not None
+        assert extents is not None
+        return (one.contact_radius, one.approach, one.peak_pressure, *extents)
+
+    def _smeared(self, x: Any, y: Any) -> np.ndarray:
+        """What the elements may smear of the stress on the surface [Pa], where the pressure has its root.
+
+        Along the surface the strain below a pressure is -(1 + nu)(1 - 2 nu)/E of it, so the stress changes by
+        (1 - 2 nu)/(1 - nu) of what the pressure differs from the cubic through its values a share `RESOLVED`
+        of an element's width and twice that on either side, or in y a fourth and half of the shortest wave.
+        On the series at an edge it does not.
+        """
+        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        fields, length = self._fine, self._units.length
+        edges = np.array(fields.edges) * length
+        away = np.abs(np.hypot(x, y)[..., None] - np.abs(edges)).min(axis=-1)
+        h = length * np.maximum(RESOLVED * surface_size(fields.surface, away / length), fields.least / 3)
+        k = np.maximum(h, np.hypot(x, y) * np.pi / (2 * fields.compliance.last))
+        nu = fields.compliance.solid.materials[0][1]
+        on_series = (y == 0) & (away < length * WITHIN * fields.least)
+        missed = []
+        for i, j in ((h, 0 * h), (0 * k, k)):
+            for beside in (-0.5, 0.0, 0.5):  # it changes sign next to the edge
+                p, near, far = (
+                    self.pressure(x + (beside + step) * i, y + (beside + step) * j)
+                    + self.pressure(x + (beside - step) * i, y + (beside - step) * j)
+                    for step in (0, 1, 2)
+                )
+                missed.append(np.abs((4 * near - far) / 6 - p / 2))
+        return np.where(on_series, 0.0, (1 - 2 * nu) / (1 - nu) * np.max(missed, axis=0))
+
+    def _pressure(self, points: Any, stated: bool) -> ElementAnswer:
+        """Pressure [Pa], uncertain by the change from the companion and that of the peak."""
+        p = self._given(points)
+        if not stated or self._coarse is None:
+            return ElementAnswer(p)
+        at = (v / self._units.length for v in self._matching(points))
+        other = np.asarray(self._coarse.pressure(*at)) * self._units.pressure
+        return ElementAnswer(p, SAFETY * np.abs(p - other) + self._errors[2])
+
+    def _matching(self, points: Any) -> tuple[Any, Any]:
+        x, y = np.broadcast_arrays(np.asarray(points.x, dtype=float), np.asarray(points.y, dtype=float))
+        at_edge = np.asarray(points.frame) == "edge"
+        if not at_edge.any():
+            return x, y
+        pair, L = [one.pressure for one in (self._fine, self._coarse) if one], self._units.length
+        fine, other = (one for one in pair if isinstance(one, StarPressure))
+        X, Y = fine.matching(other, x / L, y / L)
+        return np.where(at_edge, L * X, x), np.where(at_edge, L * Y, y)
+
+
+def solve_shape(
+    *,
+    indenter: Indenter,
+    start: Callable[[Any, Any], Any],
+    radius: float,
+    load: float,
+    coatings: Coatings,
+    substrate: tuple[float, float],
+    friction: float = 0.0,
+    quality: str = "default",
+    harmonics: int | None = None,
+    order: int = 4,
+    size: float | None = None,
+    surface: float | None = None,
+    far: float = 1000.0,
+    estimate_uncertainty: bool = True,
+) -> ShapedContact:
+    """Indenter of another shape than a sphere on a coated half-space, as in ``solve``.
+
+    indenter : shape and numbers, see ``indenter_height``.  start : p(x, y) [Pa] of arrays [m], by another
+    method
+    size, surface : of the triangles over their distance from the contact; on the surface below it over its
+    extent.  quality : "fast", "default" or "fine"; sets size, surface and harmonics that are not given, more
+    of them for a contact with pointed ends on y = 0
+    Raises ValueError for bad input, NotConverged where the correction does not end.
+    """
+    began = time.perf_counter()
+    check_choice("quality", quality, tuple(QUALITIES))
+    usual = QUALITIES[quality]
+    size, surface = usual[0] if size is None else size, usual[1] if surface is None else surface
+    check_positive(radius=radius, load=load, far=far, size=size, surface=surface)
+    check_materials(coatings, substrate, friction)
+    check_choice("order", order, (2, 3, 4))
+    height, fold = indenter_height(indenter, radius)
+    E, nu = substrate
+    widest = WIDEST * (0.75 * load * radius * (1 - nu**2) / E) ** (1 / 3)
+    if indenter[0] == "asperities":
+        widest += indenter[1][0]
+    pressure = StarPressure.of(start, fold, widest)
+    # six digits, lest the mesh follow the rounding of the pressure given
+    nearest, farthest = pressure.reach
+    reach = float(f"{MARGIN * farthest:.6g}")
+    unit = Units(length=reach, pressure=E, modulus=E)
+    solid = LayeredSolid.scaled(coatings, substrate, reach, far, E)
+    check_proportions(solid.thicknesses, "the contact's extent")
+    scaled = pressure.scaled(reach, E)
+    inner = max(0.0, nearest / reach - (MARGIN - 1))
+
+    if harmonics is None:
+        waves = np.pi / scaled.end_angle(float(surface_size(surface, 0.0)))
+        harmonics = fold * int(np.ceil(usual[2] / fold * max(1.0, AT_END * waves / QUALITIES["default"][2])))
+    check_positive(harmonics=harmonics)
+    correcting = min(CORRECTING, harmonics)
+
+    def scaled_height(x: Any, y: Any) -> Any:
+        return height(x * reach, y * reach) / reach
+
+    def on_mesh(coarser: float, begin: StarPressure) -> tuple[OffAxisFields, Corrected, np.ndarray]:
+        # vertices at the radii of the edge on y = 0, none right beside another
+        radii = sorted(round(abs(x), 4) for x in begin.edges)
+        apart = tuple(r for r, before in zip(radii, [0.0, *radii], strict=False) if r - before > surface / 10)
+        d = discretised(solid, coarser * size, coarser * surface, order, growth=0.7, edges=apart)
+        compliance = harmonic_compliance(solid, d, harmonics, fold, DENSITY / coarser, inner)
+        found = corrected(compliance, begin, scaled_height, load / unit.load, correcting)
+        if not found.converged:
+            raise NotConverged(
+                f"the pressure under the {indenter[0]} is not settled after {found.steps} corrections; "
+                "the start is too far from it, or its contact is not star-shaped"
+            )
+        p = found.pressure
+        fields = OffAxisFields.of(compliance, found.nodal_loads, friction, p, p.edges, coarser * surface)
+        beyond = np.zeros(5)
+        if coarser > 1:
+            fewer = corrected(
+                compliance, found.pressure, scaled_height, load / unit.load, int(FEWER * correcting)
+            )
+            beyond = np.abs(_numbers(fewer) - _numbers(found))
+        return fields, found, beyond
+
+    fine, found, _ = on_mesh(1.0, scaled)
+    numbers, residual = _numbers(found), found.residual(scaled_height)
+    coarse, uncertainty, extents = None, None, None
+    if estimate_uncertainty:
+        coarse, companion, beyond = on_mesh(COARSER, found.pressure)
+        change = SAFETY * np.abs(numbers - _numbers(companion))
+        stiff = STIFF * (size / QUALITIES["default"][0]) ** 4
+        change[1:3] = np.maximum(change[1:3], np.array([stiff, WAVES]) * numbers[1:3])
+        left = residual * np.abs(numbers)
+        units = np.array([reach, reach, E, reach, reach])
+        names = ("contact_radius", "approach", "peak_pressure")
+        parts = (("element size", change), ("harmonics", beyond), ("gap left", left))
+        budget = tuple(
+            (name, what, float(part[k] * units[k])) for k, name in enumerate(names) for what, part in parts
+        )
+        total = (change + beyond + left) * units
+        uncertainty = Uncertainty(float(total[0]), float(total[1]), float(total[2]), budget)
+        extents = float(total[3]), float(total[4])
+    d = fine.discretisation
+    nodes = np.linspace(0, 2.6 * found.pressure.extents[0], 160)
+    return ShapedContact(
+        fine,
+        coarse,
+        unit,
+        contact_radius=float(numbers[0]) * reach,
+        approach=float(numbers[1]) * reach,
+        peak_pressure=float(numbers[2]) * E,
+        extent_x=float(numbers[3]) * reach,
+        extent_y=float(numbers[4]) * reach,
+        surface_nodes=np.concatenate([-nodes[:0:-1], nodes]) * reach,
+        diagnostics=ShapedDiagnostics(
+            steps=found.steps,
+            harmonics=harmonics,
+            dofs=3 * d.N,
+            triangles=int(d.mesh.layer.size),
+            residual_gap=residual,
+            residual_load=abs(fine.load * unit.load / load - 1),
+            seconds=time.perf_counter() - began,
+        ),
+        uncertainty=uncertainty,
+        extent_uncertainty=extents,
+        height=height,
+        typical=_typical(PressedSolid(fine, coarse, unit)) if coarse else 0.0,
+    )
+
+
+def _typical(solid: PressedSolid) -> float:
+    """Change of the stress [Pa] from the companion, exceeded at few points below the contact."""
+    radii, turns, depths = SAMPLES
+    reach = solid._units.length
+    r, theta, z = np.meshgrid(
+        reach * (np.arange(radii) + 0.4) / radii,
+        np.pi * (np.arange(turns) + 0.3) / turns,
+        reach * (0.1 + np.arange(depths) / depths),
+    )
+    _, U = solid.sample(ElementPoints(r * np.cos(theta), r * np.sin(theta), z), "stress")
+    return float(np.percentile(U[0, 0], TYPICAL))
+
+
+def _numbers(found: Corrected) -> np.ndarray:
+    """Contact radius, approach, peak pressure, extents; scaled."""
+    p = found.pressure
+    return np.array([np.sqrt(p.area / np.pi), found.approach, p.peak, *p.extents])

@@ -1,0 +1,1 @@
+"""Response of layered half-spaces and the influence coefficients that follow from it."""

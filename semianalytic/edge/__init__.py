@@ -1,0 +1,1 @@
+"""The smooth edge of a contact, between the patches."""

@@ -1,0 +1,1 @@
+"""Pressures of surface patches: grids, DC-FFT and conjugate gradients."""
