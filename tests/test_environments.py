@@ -1,6 +1,6 @@
-"""Commands of the README and the manual, each in an environment with exactly the extras that its line names.
+"""Commands of the README and the manual, each with the extras that its line names, by default ``all``.
 
-Long commands run on one case, see ``QUICK``. Names of tests contain the extras, or none, so that ``-k none``
+Long commands run on one case, see ``QUICK``. Names of tests contain the extras, so that ``-k all:``
 runs one environment alone: continuous integration takes turns.
 """
 
@@ -42,14 +42,14 @@ def commands() -> list[tuple[str, str]]:
             if known and not any(part in words for part in NOT_RUN):
                 for pattern, quick in QUICK.items():
                     words = re.sub(f"^{pattern}", quick, words)
-                found[(extras and extras[1]) or "", words] = None
+                found[(extras and extras[1]) or "all", words] = None
     return list(found)
 
 
 @cache
 def environment(extras: str) -> Path:
-    """The programs of a new environment with ``extras``."""
-    place = ROOT / "build" / "environments" / (extras or "none")
+    """The programs of a new environment with ``extras``, or with the base alone if there are none."""
+    place = ROOT / "build" / "environments" / (extras or "base")
     subprocess.run([sys.executable, "-m", "venv", "--clear", place], check=True)
     named = f"{ROOT}[{extras}]" if extras else ROOT
     words = [place / "bin" / "pip", "install", "-q", "-c", ROOT / "constraints.txt", "-e", named]
@@ -68,13 +68,13 @@ def folder(tmp_path_factory):
 
 def test_commands_of_the_pages_are_found():
     found = commands()
-    assert {extras for extras, _ in found} >= {"", "manual"}
+    assert {extras for extras, _ in found} >= {"all", "manual"}
     assert len(found) > 20
 
 
 @pytest.mark.slow
 @pytest.mark.timeout(1800)  # the first one with an extra installs it
-@pytest.mark.parametrize(("extras", "words"), commands(), ids=[f"{e or 'none'}: {w}" for e, w in commands()])
+@pytest.mark.parametrize(("extras", "words"), commands(), ids=[f"{e}: {w}" for e, w in commands()])
 def test_a_command_runs_with_the_extras_that_its_line_names(extras, words, folder):
     programs = environment(extras)
     variables = {k: v for k, v in os.environ.items() if k != "PYTHONPATH"} | {"OMP_NUM_THREADS": "1"}
@@ -89,3 +89,45 @@ def test_a_command_runs_with_the_extras_that_its_line_names(extras, words, folde
     usual = (0, 5) if words.startswith("compare") else (0,)
     assert done.returncode in usual, done.stdout[-2000:] + done.stderr[-2000:]
     assert "\x1b" not in done.stdout + done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        ("solve --ball '10 mm, 210 GPa, 0.3' --load '20 N' --substrate '210 GPa, 0.3'", 0, "MPa"),
+        ("guest init my_code", 0, "my_code"),
+        ("guest check my_code", 0, "agree"),
+        ("guest run my_code", 0, "agree"),
+        ("vectors", 0, "problems"),
+        (
+            "solve --ball '10 mm, 210 GPa, 0.3' --load '20 N' --substrate '210 GPa, 0.3' --check",
+            3,
+            "coatcheck[fem]",
+        ),
+        ("run 01_uncoated_steel", 3, "coatcheck[fem]"),
+        ("study thickness my_coating.toml", 3, "coatcheck[report]"),
+    ],
+    ids=lambda value: f"base: {value}" if isinstance(value, str) and " " in value else None,
+)
+def test_the_base_alone_solves_and_examines_guests_and_names_the_extra_of_what_it_lacks(
+    words, code, said, folder
+):
+    programs = environment("")
+    done = subprocess.run(
+        [programs / "coatcheck", *shlex.split(words)], cwd=folder, capture_output=True, text=True, timeout=600
+    )
+    assert done.returncode == code, done.stdout[-2000:] + done.stderr[-2000:]
+    assert said in done.stdout + done.stderr
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.timeout(900)
+def test_the_base_alone_takes_at_most_300_mb():
+    """base: without pip and what came with the environment."""
+    packages = next(environment("").parent.glob("lib/python*/site-packages"))
+    files = [path for path in packages.rglob("*") if path.is_file() and path.parts[-2] != "__pycache__"]
+    own = [path for path in files if path.relative_to(packages).parts[0] not in ("pip", "setuptools")]
+    assert sum(path.stat().st_size for path in own) <= 300e6

@@ -38,7 +38,10 @@ def test_what_is_cited_and_what_is_installed_have_one_version():
 def test_every_dependency_is_pinned():
     pyproject = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     asked = pyproject["dependencies"] + [
-        d for extra in pyproject["optional-dependencies"].values() for d in extra
+        d
+        for extra in pyproject["optional-dependencies"].values()
+        for d in extra
+        if not d.startswith("coatcheck[")
     ]
     names = {re.split(r"[=<>;\[ ]", line)[0] for line in PINNED}
     assert {re.split(r"[=<>;\[ ]", dependency)[0] for dependency in asked} <= names

@@ -11,6 +11,8 @@ from cyclopts import App, CycloptsError
 
 from verification.commands.common.command_error import BAD_INPUT, STOPPED
 from verification.commands.common.terminal import print_error
+from verification.judging.outcome import Outcome
+from verification.regression.run_exit_codes import EXIT
 
 CODES = (
     "Exit codes: 0 all agree, 1 disagreement, 2 bad input, 3 no result, 4 inconclusive, 5 all agree but a "
@@ -119,6 +121,26 @@ def _remedy(text: str, command: Sequence[str]) -> str:
     return f"Try: coatcheck {' '.join([*(one for one in command if one in COMMANDS), '--help'])}"
 
 
+# Packages that the base installation lacks, by the name that Python imports, with the extra that brings them.
+EXTRAS = {
+    "skfem": "fem",
+    "gmsh": "fem",
+    "meshio": "fields",
+    "pyvista": "fields",
+    "matplotlib": "report",
+    "pyarrow": "report",
+}
+
+
+def _missing_extra(error: BaseException | None) -> str | None:
+    """The package of an extra whose absence caused an ``error``; None if it had another cause."""
+    while error is not None:
+        if isinstance(error, ModuleNotFoundError) and (error.name or "").partition(".")[0] in EXTRAS:
+            return (error.name or "").partition(".")[0]
+        error = error.__cause__ or error.__context__
+    return None
+
+
 def main() -> None:
     """Entry of the ``coatcheck`` command."""
     try:
@@ -127,6 +149,13 @@ def main() -> None:
         text = " ".join(str(error).split())
         print_error(f"{text} {_remedy(text, sys.argv[1:2])}")
         code = BAD_INPUT
+    except ImportError as error:
+        package = _missing_extra(error)
+        if package is None:
+            raise
+        extra = EXTRAS[package]
+        print_error(f"{package} is needed here and not installed. Try: pip install 'coatcheck[{extra}]'")
+        code = EXIT[Outcome.NO_RESULT]
     except KeyboardInterrupt:
         sys.stderr.write("\ncoatcheck: stopped; finished cases are kept, go on with --resume\n")
         code = STOPPED

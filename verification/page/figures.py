@@ -3,24 +3,27 @@
 Lengths are in units of the drawing, of which matplotlib has 72 to its inch.
 """
 
+from __future__ import annotations
+
 import io
 import re
 from collections.abc import Sequence
 from functools import lru_cache
+from importlib.util import find_spec
 from math import ceil, floor, isfinite, log10
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from zlib import crc32
 
-import matplotlib as mpl
 import numpy as np
 from markupsafe import Markup, escape
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.figure import Figure
 
 from verification.page.symbol_text import drawn, unicode
 from verification.problem.array_types import Array
 from verification.sources.source_record import Style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 # Each role of the style sheet with the colour that stands for it until the figure is written.
 ROLES = {
@@ -39,9 +42,16 @@ _BARE = re.compile(r"<g>\s*((?:<(?:path|text|use)\b[^>]*(?:/>|>[^<]*</text>)\s*)
 Box = tuple[float, float, float, float]  # left, top, width, height
 
 
+def can_draw() -> bool:
+    """Whether matplotlib, of the extra ``report``, is installed; without it a page has its tables alone."""
+    return find_spec("matplotlib") is not None
+
+
 @lru_cache(maxsize=16)
 def _empty(width: float, height: float) -> tuple[Figure, dict[Box, Axes]]:
     """A figure with its axes by their boxes, used again: to make axes takes most of the time."""
+    from matplotlib.figure import Figure
+
     return Figure(figsize=(width / 72, height / 72), frameon=False), {}
 
 
@@ -153,6 +163,9 @@ def ring(axes: Axes, x: float, y: float) -> None:
 
 def written(figure: Figure) -> str:
     """The SVG of a ``figure``; the same figure always gives the same text."""
+    import matplotlib as mpl
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
+
     out = io.StringIO()
     with mpl.rc_context(_SETTINGS):
         FigureCanvasSVG(figure).print_svg(out, metadata={"Date": None})

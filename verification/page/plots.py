@@ -1,17 +1,22 @@
 """Plots of a page: curves over a line with their differences, errors over a resolution, a histogram."""
 
+from __future__ import annotations
+
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from math import ceil, floor, log10
+from typing import TYPE_CHECKING
 
 import numpy as np
 from markupsafe import Markup
-from matplotlib.axes import Axes
 
 from verification.page.figures import HUGE, ROLES, Sheet, line, marks, power_of_ten, ring, round_ticks
 from verification.page.page_parts import Panel
 from verification.problem.array_types import Array
 from verification.sources.source_record import Style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 FLOOR = 1e-9  # of a difference that is drawn
 TOP = 1e-1

@@ -14,6 +14,7 @@ from verification.guests.exam_subjects import exact_profile, exact_radius, refer
 from verification.guests.examination import Examined
 from verification.guests.slip_diagnosis import UNEXPLAINED, slips
 from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.page.figures import can_draw
 from verification.page.html_page import render_sections
 from verification.page.number_text import plain, seconds
 from verification.page.page_parts import (
@@ -224,8 +225,8 @@ def _failures(found: Examined) -> Section | None:
             by.setdefault(one[1].quantity, []).append(one)
     # Every quantity once before one is shown again.
     ranked = [one for turn in zip_longest(*by.values()) for one in turn if one is not None]
-    figures = [_figure(found.guest.name, *one) for one in ranked[:MOST_FIGURES]]
-    parts = []
+    figures = [_figure(found.guest.name, *one) for one in ranked[:MOST_FIGURES]] if can_draw() else []
+    parts = [] if can_draw() else [Part("Figures are left out: they need matplotlib, of the extra report.")]
     if figures:
         legend = [(Markup('<span class="s-semi">—</span>'), "guest"), (Markup("<span>━</span>"), "exact")]
         caption = (
@@ -307,7 +308,8 @@ def _convergence(found: Examined) -> Section | None:
     table = Table(
         "Largest error against the exact reference, order observed over the last two levels.", heads, rows
     )
-    gallery = Gallery([], panels(plots), "A curve for each case; the observed order is written at its end.")
+    caption = "A curve for each case; the observed order is written at its end."
+    gallery = Gallery([], panels(plots), caption) if can_draw() else None
     return Section("convergence", "Convergence against the exact solution", [Part("", [table], gallery)])
 
 
