@@ -7,22 +7,11 @@ from case_texts import case_text
 from quick_case import coatcheck
 from synthetic_results import INFO, contact, result_of
 
-from verification.commands.common.terminal import print_warnings
 from verification.report.report_material import Material
 from verification.report.report_page import render
 from verification.running.case_result import from_json, to_json
 
 LINE = "load = 3 <looks> like mN"
-
-
-def test_warnings_are_lines_on_standard_error(capsys):
-    print_warnings((LINE, "second"), "mine", strict=False)
-    assert [line.split(": ")[2:] for line in capsys.readouterr().err.splitlines()] == [
-        ["mine", LINE],
-        ["mine", "second"],
-    ]
-    print_warnings((LINE,), "mine", strict=False, silent=True)
-    assert capsys.readouterr().err == ""
 
 
 def test_result_and_page_have_them():

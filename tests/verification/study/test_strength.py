@@ -33,11 +33,6 @@ def log_normal(mean, deviation):
     return strength(LogNormal(mean=mean, standard_deviation=deviation))
 
 
-def test_quantile_of_a_uniform_strength_is_linear():
-    share = np.linspace(0.01, 0.99, 21)
-    np.testing.assert_allclose(uniform(1e9, 2e9).quantile(share), 1e9 + share * 1e9, rtol=1e-12)
-
-
 def test_log_normal_strength_has_its_mean_and_standard_deviation():
     one = log_normal(2e9, 0.4e9)
     moments = [quad(lambda p, k=k: float(one.quantile(p)) ** k, 0, 1, epsrel=1e-10)[0] for k in (1, 2)]
@@ -55,13 +50,6 @@ def test_governing_probability_of_two_log_normal_strengths():
     found = sampled(stress, strengths)
     np.testing.assert_allclose(found.governs[0], exact, atol=CLOSE)
     np.testing.assert_allclose(found.governs.sum(axis=0), 1.0)
-
-
-def test_governing_probability_of_two_uniform_strengths():
-    # P(s1/S1 > s2/S2) = P(S1 < r S2), r = s1/s2, for S1 in 0..1, S2 in 1..2 GPa, r < 1/2: E(r S2) = 1.5 r
-    strengths = {"a": uniform(1.0, 1e9), "b": uniform(1e9, 2e9)}
-    found = sampled(np.array([[0.4e9], [1e9]]), strengths)
-    assert found.governs[0, 0] == pytest.approx(0.6, abs=CLOSE)
 
 
 def test_failure_probability_is_that_of_independent_strengths():

@@ -28,7 +28,7 @@ from verification.cases.toml_file import Strict
 from verification.cases.unit_numbers import InSI, Pascals
 from verification.problem.array_types import Array
 from verification.study.largest_stresses import Stress
-from verification.study.thickness_curves import Curve
+from verification.study.thickness_curves import ThicknessCurve
 
 
 class Uniform(Strict):
@@ -199,7 +199,7 @@ class Criteria(Strict):
 
 
 @dataclass(frozen=True, eq=False)
-class Judged:
+class JudgedCurve:
     """A criterion evaluated on one curve; thicknesses over a_h.
 
     modes : of the criterion.   utilisation : (modes, points of the curve).   limited : strengths were given.
@@ -208,7 +208,7 @@ class Judged:
     utilisation.
     """
 
-    curve: Curve
+    curve: ThicknessCurve
     modes: tuple[str, ...]
     utilisation: Array
     limited: bool
@@ -216,7 +216,7 @@ class Judged:
     interpolation_error: float
 
 
-def judged(curve: Curve, criteria: Criteria) -> Judged:
+def judged(curve: ThicknessCurve, criteria: Criteria) -> JudgedCurve:
     """Evaluate ``criteria`` on ``curve``, interpolated by monotone cubics in log h.
 
     Raises ValueError for a curve of fewer than two points.
@@ -230,7 +230,7 @@ def judged(curve: Curve, criteria: Criteria) -> Judged:
     bound = scale * (stress + np.nan_to_num([curve.uncertainty[mode] for mode in strengths]))
     s = np.log(curve.h)
     h = np.geomspace(curve.h[0], curve.h[-1], SAMPLES)
-    return Judged(
+    return JudgedCurve(
         curve,
         tuple(strengths),
         used,

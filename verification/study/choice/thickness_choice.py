@@ -13,7 +13,7 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from verification.problem.array_types import Array
-from verification.study.choice.failure_criteria import SAMPLES, Criteria, Judged, Strength
+from verification.study.choice.failure_criteria import SAMPLES, Criteria, JudgedCurve, Strength
 
 EVEN = 0.01  # of the smallest utilisation, unless the curves are less certain
 HALVED = 4  # at least by as much the error of interpolation falls with half the distance of points
@@ -58,7 +58,7 @@ class Choice:
     even : the range of these.   ranges : admissible ones, none without strengths.
     """
 
-    judgements: tuple[Judged, ...]
+    judgements: tuple[JudgedCurve, ...]
     criteria: Criteria
     h: Array
     use: Array
@@ -82,7 +82,7 @@ class Choice:
         """Thickness of ``least``."""
         return float(self.h[self.largest.argmin()])
 
-    def governing(self, h: float) -> tuple[Judged, str]:
+    def governing(self, h: float) -> tuple[JudgedCurve, str]:
         """The curve of the friction, and the mode, with the largest utilisation at ``h``."""
         at = int(np.abs(np.log(self.h / h)).argmin())
         friction, mode = np.unravel_index(int(self.use[:, :, at].argmax()), self.use.shape[:2])
@@ -117,7 +117,7 @@ def strengths_drawn(strengths: Mapping[str, Strength]) -> Array:
     return np.stack([s.quantile(shares[:, i]) for i, s in enumerate(strengths.values())], axis=1)
 
 
-def choice(judgements: Sequence[Judged], criteria: Criteria) -> Choice:
+def choice(judgements: Sequence[JudgedCurve], criteria: Criteria) -> Choice:
     """The choice from the curves of one modulus, one for each friction."""
     members = tuple(sorted(judgements, key=lambda j: j.curve.friction))
     low, high = max(j.curve.h[0] for j in members), min(j.curve.h[-1] for j in members)

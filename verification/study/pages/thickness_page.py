@@ -11,12 +11,10 @@ import numpy as np
 
 from verification.cases.unit_numbers import Units
 from verification.page.page_parts import Cell, Part, Section, Table, Value, number, row, table_of
-from verification.page.source_labels import source_label
-from verification.study.choice.elastic_limits import beyond_elastic
 from verification.study.choice.failure_criteria import MODES, judged
 from verification.study.choice.thickness_choice import DRAWN, Choice, End, Range, choice
 from verification.study.pages.contour_maps import contour_figures, nearest
-from verification.study.pages.study_assembly import Draw, Written, common_sections, write_page
+from verification.study.pages.study_assembly import Draw, Written, write_page
 from verification.study.pages.study_figures import (
     Drawn,
     contact_figure,
@@ -26,23 +24,9 @@ from verification.study.pages.study_figures import (
 )
 from verification.study.study_plan import Study
 from verification.study.study_table import read_columns
-from verification.study.thickness_curves import Curve, curves
+from verification.study.thickness_curves import ThicknessCurve, curves
 
 DIGITS = 2  # of a thickness, at most
-
-
-def near(curve: Curve, h: float, mode: str) -> dict[str, tuple[float, float]]:
-    """By source the cross-check of ``mode`` nearest to ``h`` over a_h: its h, its |difference| over p_h."""
-    found = {}
-    for source, marks in curve.marks.items():
-        at, value = marks[mode]
-        known = np.isin(at, curve.h) & np.isfinite(value)
-        if not known.any():
-            continue
-        i = int(np.flatnonzero(known)[np.abs(np.log(at[known] / h)).argmin()])
-        here = float(curve.stress[mode][np.flatnonzero(curve.h == at[i])[0]])
-        found[source] = float(at[i]), abs(float(value[i]) - here)
-    return found
 
 
 def rounded(value: float, uncertainty: float, upwards: bool | None = None) -> str:
@@ -137,31 +121,6 @@ def _share(found: Choice, end: End) -> str:
     return f"{100 * share:.0f} % of the failures there, "
 
 
-def checked_message(choice: Choice, units: Units) -> str:
-    """The cross-checks nearest to what is recommended, every source with its worst; "" without any."""
-    pairs = [*choice.ranges, choice.even]
-    places = [(end.h, end.mode, end.friction) for pair in pairs for end in pair if end is not None]
-    judgement, mode = choice.governing(choice.best)
-    places.append((choice.best, mode, judgement.curve.friction))
-    curves = {j.curve.friction: j.curve for j in choice.judgements}
-    worst: dict[str, tuple[float, str]] = {}
-    for h, mode, f in places:
-        for source, (at, difference) in near(curves[f], h, mode).items():
-            if difference > worst.get(source, (-1.0, ""))[0]:
-                worst[source] = difference, f"{mode}, {_length(choice, at, units)}, f = {f:g}"
-    if not worst:
-        return ""
-    scale = judgement.curve.p_h / units.pascal
-    parts = [
-        f"at most {scale * difference:.1g} {units.stress} off the {source_label(source)} ({place})"
-        for source, (difference, place) in worst.items()
-    ]
-    return (
-        f"E1/E2 = {judgement.curve.ratio:.3g}: at the checked thicknesses nearest to these the governing "
-        f"stresses are {' and '.join(parts)}."
-    )
-
-
 CONTOURS = (0.1, 0.5, 2.0)  # h/a_h; the solved ones nearest to these
 
 
@@ -199,14 +158,11 @@ def write_study_report(
             ("contact", "The contact against thickness", lambda: contact_figure(found, units)),
         ]
     said = answers(choices, units)
-    first = _preference(study, choices, said)
-    sections = [first, *common_sections(study, folder, draws, columns, failures, drawing)]
-    solved = sum(c.h.size for c in every)
-    lost = sum(len(c.failures) for c in every)
+    solved, lost = (sum(counts) for counts in ([c.h.size for c in every], [len(c.failures) for c in every]))
     points = ("points", f"{solved} solved" + (f", {lost} could not be" if lost else ""))
     summary = " ".join(said) or f"No answer: no curve of {study.title} has two solved points."
-    beyond = beyond_elastic(study, columns)
-    return write_page(table, study, folder, said, summary, sections, [points], facts, beyond)
+    first, about = _preference(study, choices, said), [points, *facts]
+    return write_page(table, study, folder, columns, said, summary, first, draws, failures, about, drawing)
 
 
 def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) -> Section:
@@ -256,11 +212,7 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
         columns,
         row_css=lambda one: "" if one.ranges or not one.judgements[0].limited else "disagrees",
     )
-    texts = [
-        *(said if len(said) > 1 else []),
-        study.criteria.description(),
-        *filter(None, (checked_message(one, units) for one in choices)),
-    ]
+    texts = [*(said if len(said) > 1 else []), study.criteria.description()]
     parts = [*(Part(text) for text in texts), Part("", [table])]
     return Section("preferable", "Which thickness", [*parts, *_chances(study, choices)])
 
@@ -299,9 +251,9 @@ def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
     return [Part("", [table], title="Probabilities")]
 
 
-def _maps(study: Study, found: Sequence[Curve], failures: list[str]) -> list[Drawn]:
+def _maps(study: Study, found: Sequence[ThicknessCurve], failures: list[str]) -> list[Drawn]:
     """Contours of the most compliant and the stiffest coating at the middle friction; none of a stack."""
-    if study.above or study.below:
+    if study.held:
         return []
     frictions = sorted({c.friction for c in found})
     middle = [c for c in found if c.friction == frictions[len(frictions) // 2]]
