@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -22,16 +23,7 @@ SEED = 6101
 LENGTHS = {"nm": 1e-9, "um": 1e-6, "mm": 1e-3}
 STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6}
 FORCES = {"nN": 1e-9, "uN": 1e-6, "mN": 1e-3, "N": 1.0, "kN": 1e3}
-GEL = (
-    "--ball",
-    "5 um",
-    "--load",
-    "1 nN",
-    "--coating",
-    "gel 10 um, 10 kPa, 0.49",
-    "--substrate",
-    "70 GPa, 0.22",
-)
+GEL = "--ball '5 um' --load '1 nN' --coating 'gel 10 um, 10 kPa, 0.49' --substrate '70 GPa, 0.22'"
 
 
 def parsed(text):
@@ -116,31 +108,10 @@ def test_the_shape_of_an_indenter_is_stated_once():
 
 # The contact that was shown under 1000 N, an AFM tip, a small tip, a gel under a bead.
 SHOWN = [
-    (("--ball", "25 mm, 20 GPa, 0.3", "--approach", "4 mm", "--substrate", "20 GPa, 0.3"), "mm MPa kN"),
+    ("--ball '25 mm, 20 GPa, 0.3' --approach '4 mm' --substrate '20 GPa, 0.3'", "mm MPa kN"),
+    ("--ball '20 nm' --load '20 nN' --coating '2 nm, 70 GPa, 0.2' --substrate '160 GPa, 0.28'", "nm MPa nN"),
     (
-        (
-            "--ball",
-            "20 nm",
-            "--load",
-            "20 nN",
-            "--coating",
-            "2 nm, 70 GPa, 0.2",
-            "--substrate",
-            "160 GPa, 0.28",
-        ),
-        "nm MPa nN",
-    ),
-    (
-        (
-            "--ball",
-            "10 um",
-            "--load",
-            "5 mN",
-            "--coating",
-            "TiN 2 um, 450 GPa, 0.2",
-            "--substrate",
-            "210 GPa, 0.3",
-        ),
+        "--ball '10 um' --load '5 mN' --coating 'TiN 2 um, 450 GPa, 0.2' --substrate '210 GPa, 0.3'",
         "um MPa mN",
     ),
     (GEL, "um Pa nN"),
@@ -151,9 +122,9 @@ SHOWN = [
 def test_every_number_shown_is_in_the_units_of_the_contact(words, units, tmp_path):
     """The text, read back with its units, is the JSON, which is in SI; no other unit of a kind appears."""
     length, stress, force = units.split()
-    done = coatcheck("solve", *words, cwd=tmp_path)
+    done = coatcheck("solve", *shlex.split(words), cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    content = json.loads(coatcheck("solve", *words, "--json", cwd=tmp_path).stdout)
+    content = json.loads(coatcheck("solve", *shlex.split(words), "--json", cwd=tmp_path).stdout)
     assert content["units"] == {"length": "m", "stress": "Pa", "force": "N"}
     assert content["given"] == ({"approach": 0.004} if "--approach" in words else "load")
     text = done.stdout
@@ -188,7 +159,7 @@ def test_every_number_shown_is_in_the_units_of_the_contact(words, units, tmp_pat
 
 def test_a_soft_thick_film_is_measured_in_its_own_radius(tmp_path):
     """10 um of gel are 2700 radii of the contact on bare glass, 15 of its own; no --force is needed."""
-    done = coatcheck("solve", *GEL, "--json", cwd=tmp_path)
+    done = coatcheck("solve", *shlex.split(GEL), "--json", cwd=tmp_path)
     content = json.loads(done.stdout)
     problem = parsed(content["case_file"]).problem
     assert 1e-5 / problem.a_h > 2000

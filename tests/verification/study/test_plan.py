@@ -42,6 +42,11 @@ def test_thicknesses_crowd_around_their_geometric_middle():
         ("[sweep]", "[semianalytic]\npatches = 5\n[sweep]", "semianalytic, patches"),
         ("[2e-5, 4e-5, 8e-5]", "{ from = 1e-5, to = 1e-4, count = 99999 }", "points"),
         ("[sweep]", "[sweep", "TOML"),
+        ("load = 20.0", "", "load"),
+        ("[sweep]", "[criteria]\nstrength = { sigma_xx_surface = -1.0 }\n[sweep]", "sigma_xx_surface"),
+        ("[sweep]", "[criteria]\nstrength = { hardness = 1e9 }\n[sweep]", "criteria, strength, hardness"),
+        ("[sweep]", "[criteria]\nminimise = []\n[sweep]", "criteria, minimise"),
+        ("[sweep]", "[criteria]\nsafety = 0.5\n[sweep]", "criteria, safety"),
     ],
 )
 def test_bad_study_is_one_sentence_with_file_and_key(old, new, said):

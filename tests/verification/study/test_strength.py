@@ -10,7 +10,7 @@ from scipy.special import ndtr
 
 from verification.cases.toml_file import CaseError
 from verification.cases.unit_numbers import Units
-from verification.study.choice.failure_criteria import Criteria, LogNormal, Uniform, judged, strength_of
+from verification.study.choice.failure_criteria import Criteria, LogNormal, Uniform, strength_of
 from verification.study.choice.thickness_choice import DRAWN, choice, sampled
 from verification.study.pages.thickness_page import answers
 from verification.study.study_plan import parse_study
@@ -72,14 +72,14 @@ def test_the_fractile_counts_and_the_answer_names_the_share_of_failures(tmp_path
         }
     )
     fixed = Criteria(strength=scattered.strengths(study_table.P_H))
-    one = choice([judged(c, scattered) for c in found], scattered)
-    same = choice([judged(c, fixed) for c in found], fixed)
+    one = choice([c for c in found], scattered)
+    same = choice([c for c in found], fixed)
     assert [end and end.h for end in one.ranges[0]] == [end and end.h for end in same.ranges[0]]
     (answer,) = answers([one], Units())
     assert "f = 0.25" in answer
     # at the limit the governing mode fails as often as the fractile says
     limit = one.ranges[0][0]
-    breaks = one.chances(np.array([limit.h])).breaks[one.judgements[0].modes.index(limit.mode), 0]
+    breaks = one.chances(np.array([limit.h])).breaks[one.modes.index(limit.mode), 0]
     assert breaks == pytest.approx(0.05, abs=CLOSE)
 
 

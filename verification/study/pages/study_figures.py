@@ -271,11 +271,11 @@ def use_figures(choices: Sequence[Choice], units: Units) -> list[Drawn]:
 
     For strengths that scatter the probability that each mode governs too, and that any fails.
     """
-    return [_use(choice, units) for choice in choices if choice.judgements[0].limited]
+    return [_use(choice, units) for choice in choices if choice.criteria.limited]
 
 
 def _use(choice: Choice, units: Units) -> Drawn:
-    curve, modes = choice.judgements[0].curve, choice.judgements[0].modes
+    curve, modes = choice.curves[0], choice.modes
     size = curve.a_h / units.metre
     scattered = choice.criteria.scatters
     use = dict(zip(modes, choice.use.max(axis=0), strict=True))
@@ -321,8 +321,8 @@ def governing_figure(choices: Sequence[Choice], units: Units) -> list[Drawn]:
     """
     if len(choices) < 2:
         return []
-    first = choices[0].judgements[0]
-    modes, size = first.modes, first.curve.a_h / units.metre
+    first = choices[0]
+    modes, size = first.modes, first.curves[0].a_h / units.metre
     over, ratio, use = _map(choices)
     h, governing, largest = over * size, use.argmax(axis=0), use.max(axis=0)
     with sheet(78, len(modes), right=4) as figure:
@@ -335,13 +335,13 @@ def governing_figure(choices: Sequence[Choice], units: Units) -> list[Drawn]:
         )  # fmt: skip
         lines = axes.contour(h, ratio, largest, levels=6, colors="#555555", linewidths=0.6)
         axes.clabel(lines, fontsize=6, fmt="%.3g")
-        if first.limited:
+        if first.criteria.limited:
             axes.contour(h, ratio, largest, levels=[1.0], colors="#c02a2a", linewidths=1.6)
-        for curve in (one.judgements[0].curve for one in choices):
+        for curve in (one.curves[0] for one in choices):
             axes.plot(curve.h * size, np.full_like(curve.h, curve.ratio), ".", color="#222222", ms=1.6)
         axes.set_yscale("log")
         axes.yaxis.set_minor_formatter(NullFormatter())
-        axes.set_yticks(sorted({one.judgements[0].curve.ratio for one in choices}))
+        axes.set_yticks(sorted({one.curves[0].ratio for one in choices}))
         axes.yaxis.set_major_formatter(lambda y, _: f"{y:.3g}")
         axes.set_ylabel("$E_1/E_2$")
         thickness_axes([axes], size, units)
@@ -355,7 +355,7 @@ def governing_figure(choices: Sequence[Choice], units: Units) -> list[Drawn]:
             for i in range(0, ratio.size, 4)
             for j in range(0, h.size, 8)
         ]
-        quantity = "stress over strength, red where it is 1" if first.limited else "stress over p_h"
+        quantity = "stress over strength, red where it is 1" if first.criteria.limited else "stress over p_h"
         caption = (
             "Colour: the mode whose stress is largest against its strength, at the worst friction. Lines: "
             f"the largest {quantity}. Dots: solved points."
@@ -370,9 +370,9 @@ def pale(colour: str) -> tuple[float, float, float, float]:
 
 def _map(choices: Sequence[Choice]) -> tuple[Array, Array, Array]:
     """h/a_h, E1/E2, uses of strength (modes, ratios, thicknesses) on a dense grid."""
-    members = sorted(choices, key=lambda one: one.judgements[0].curve.ratio)
+    members = sorted(choices, key=lambda one: one.curves[0].ratio)
     h = np.geomspace(max(one.h[0] for one in members), min(one.h[-1] for one in members), 240)
-    known = np.log([one.judgements[0].curve.ratio for one in members])
+    known = np.log([one.curves[0].ratio for one in members])
     ratio = np.exp(np.linspace(known[0], known[-1], 120))
     rows = np.stack(
         [PchipInterpolator(np.log(one.h), one.use.max(axis=0), axis=1)(np.log(h)) for one in members], axis=1

@@ -11,7 +11,7 @@ import numpy as np
 
 from verification.cases.unit_numbers import Units
 from verification.page.page_parts import Cell, Part, Section, Table, Value, number, row, table_of
-from verification.study.choice.failure_criteria import MODES, judged
+from verification.study.choice.failure_criteria import MODES
 from verification.study.choice.thickness_choice import DRAWN, Choice, End, Range, choice
 from verification.study.pages.contour_maps import contour_figures, nearest
 from verification.study.pages.study_assembly import Draw, Written, write_page
@@ -52,18 +52,18 @@ def answers(choices: Sequence[Choice], units: Units) -> list[str]:
 
 
 def _answer(found: Choice, units: Units, *, several: bool) -> str:
-    frictions = [j.curve.friction for j in found.judgements]
+    frictions = [one.friction for one in found.curves]
     at = f"f = {frictions[0]:g}" + (f" to {frictions[-1]:g}" if len(frictions) > 1 else "")
-    name = f"E1/E2 = {found.judgements[0].curve.ratio:.3g}: " if several else ""
-    if not found.judgements[0].limited:
+    name = f"E1/E2 = {found.curves[0].ratio:.3g}: " if several else ""
+    if not found.criteria.limited:
         return f"{name}{_even(found, units)} at {at}{_limits(found, found.even)}."
     if not found.ranges:
-        judgement, mode = found.governing(found.best)
+        mode, friction = found.governing(found.best)
         use = rounded(found.least, found.error)
         return (
             f"{name}no thickness of the sweep keeps every stress below its strength at {at}; even the best, "
             f"{_length(found, found.best, units)}, uses {use} of it: {MODES[mode]} "
-            f"(f = {judgement.curve.friction:g})."
+            f"(f = {friction:g})."
         )
     parts = []
     for pair in found.ranges:
@@ -83,7 +83,7 @@ def _even(found: Choice, units: Units) -> str:
 def between(found: Choice, pair: Range, units: Units, *, safe: bool = False) -> str:
     """ "2 to 10 µm"; inwards where ``safe``, with the ends of the sweep named."""
     low, high = pair
-    scale = found.judgements[0].curve.a_h / units.metre
+    scale = found.curves[0].a_h / units.metre
     ends = []
     for end, edge, upwards in ((low, found.h[0], True), (high, found.h[-1], False)):
         value, U = (float(edge), 0.0) if end is None else (end.h, end.uncertainty)
@@ -96,7 +96,7 @@ def between(found: Choice, pair: Range, units: Units, *, safe: bool = False) -> 
 
 
 def _length(found: Choice, h: float, units: Units) -> str:
-    return f"{rounded(h * found.judgements[0].curve.a_h / units.metre, 0.0)} {units.length}"
+    return f"{rounded(h * found.curves[0].a_h / units.metre, 0.0)} {units.length}"
 
 
 def _limits(found: Choice, pair: Range) -> str:
@@ -117,7 +117,7 @@ def _share(found: Choice, end: End) -> str:
     chances = found.chances(np.array([end.h]))
     if not chances.fails[0]:
         return ""
-    share = chances.breaks[found.judgements[0].modes.index(end.mode), 0] / chances.fails[0]
+    share = chances.breaks[found.modes.index(end.mode), 0] / chances.fails[0]
     return f"{100 * share:.0f} % of the failures there, "
 
 
@@ -143,10 +143,7 @@ def write_study_report(
     every = curves(columns)
     found = [c for c in every if c.h.size >= 2]
     ratios = sorted({c.ratio for c in found})
-    choices = [
-        choice([judged(c, study.criteria) for c in found if c.ratio == ratio], study.criteria)
-        for ratio in ratios
-    ]
+    choices = [choice([c for c in found if c.ratio == ratio], study.criteria) for ratio in ratios]
     failures = [f"{c.label}, h = {h:.4g} a_h: {message}" for c in every for h, message in c.failures]
     draws: list[Draw] = []
     if found and figures:
@@ -171,22 +168,19 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
     rows = [
         one
         for every in choices
-        for one in (
-            every,
-            *(choice([j], study.criteria) for j in every.judgements if len(every.judgements) > 1),
-        )
+        for one in (every, *(choice([one], study.criteria) for one in every.curves if len(every.curves) > 1))
     ]
-    limited = any(one.judgements[0].limited for one in choices)
+    limited = study.criteria.limited
 
     def lengths(text: str) -> str:
         return text.replace(f" {units.length}", "")
 
     def friction(one: Choice) -> Value:
-        f = [j.curve.friction for j in one.judgements]
+        f = [curve.friction for curve in one.curves]
         return number(f[0], "{:g}".format) if len(f) == 1 else f"{f[0]:g} to {f[-1]:g}"
 
     columns: list[tuple[str, Callable[[Choice], Value]]] = [
-        ("E1/E2", lambda one: number(one.judgements[0].curve.ratio, "{:.4g}".format)),
+        ("E1/E2", lambda one: number(one.curves[0].ratio, "{:.4g}".format)),
         ("f", friction),
         (f"best h [{units.length}]", lambda one: lengths(between(one, one.even, units))),
         ("tolerance", lambda one: number(one.tolerance, "{:.1%}".format)),
@@ -210,7 +204,7 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
         "stress exceeds the smallest by no more than the tolerance, 1 % or the error of interpolation.",
         rows,
         columns,
-        row_css=lambda one: "" if one.ranges or not one.judgements[0].limited else "disagrees",
+        row_css=lambda one: "" if one.ranges or not limited else "disagrees",
     )
     texts = [*(said if len(said) > 1 else []), study.criteria.description()]
     parts = [*(Part(text) for text in texts), Part("", [table])]
@@ -218,7 +212,7 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
 
 
 def _mode(one: Choice) -> str:
-    return one.governing(one.best)[1]
+    return one.governing(one.best)[0]
 
 
 def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
@@ -232,7 +226,7 @@ def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
             places |= {"limit below": low.h} if low else {}
             places |= {"limit above": high.h} if high else {}
         chances = one.chances(np.array([*places.values()]))
-        curve = one.judgements[0].curve
+        curve = one.curves[0]
         for k, (what, h) in enumerate(places.items()):
             rows.append(
                 row(
@@ -245,7 +239,7 @@ def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
     table = Table(
         f"Probability that each mode governs and that any stress exceeds its strength, by {DRAWN} samples "
         "of the strengths at the worst friction; standard error below 0.4 %.",
-        ["E1/E2", "at", f"h [{study.units.length}]", *choices[0].judgements[0].modes, "fails"],
+        ["E1/E2", "at", f"h [{study.units.length}]", *choices[0].modes, "fails"],
         rows,
     )
     return [Part("", [table], title="Probabilities")]
