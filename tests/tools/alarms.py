@@ -12,7 +12,6 @@ from rich.markup import escape
 from verification.cases.case_file import Case, parse_case
 from verification.cases.random_problems import Draw, draw, draw_ellipse
 from verification.commands.common.command_error import CommandError
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import RECORDS, require_checkout
 from verification.commands.common.shared_options import (
     AsJson,
@@ -31,7 +30,14 @@ from verification.commands.common.task_progress import (
     solve,
     worker_count,
 )
-from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
+from verification.commands.common.terminal import (
+    STYLE,
+    named_table,
+    one_line,
+    print_json,
+    print_out,
+    with_exit_code,
+)
 from verification.commands.common.terminal_bar import require_gmsh
 from verification.evidence.alarm_record import DECADES, Alarm, AlarmRecord, Ratios, write_record
 from verification.judging.verdict import Outcome
@@ -79,7 +85,7 @@ def alarms(
         record: Store the record as RECORDS/alarms.json, for the credibility page of every report.
         time_limit: Seconds one problem may take before it is stopped and counted as alarms.
     """
-    jobs = worker_count(jobs, time_limit)
+    jobs = worker_count(jobs, time_limit=time_limit)
     if count < 1 or seed < 0:
         raise CommandError(f"--count = {count}, --seed = {seed}; only the seed may be zero, none negative")
     kind = "--films" if films else "--ellipses" if ellipses else ""

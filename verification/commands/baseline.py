@@ -9,10 +9,9 @@ from rich.markup import escape
 
 from verification.cases.case_file import default_cases
 from verification.commands.common.command_error import CommandError
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import BASELINE, require_checkout
 from verification.commands.common.shared_options import BaselineFolder, Quiet
-from verification.commands.common.terminal import print_out
+from verification.commands.common.terminal import print_out, with_exit_code
 from verification.credibility.self_tests import self_tests
 from verification.judging.verdict import Outcome
 from verification.regression.baseline_change import updated

@@ -6,10 +6,16 @@ from pathlib import Path
 from rich.markup import escape
 
 from verification.commands.common.command_error import CommandError
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import nearest_run
 from verification.commands.common.shared_options import AsJson, Quiet
-from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
+from verification.commands.common.terminal import (
+    STYLE,
+    named_table,
+    one_line,
+    print_json,
+    print_out,
+    with_exit_code,
+)
 from verification.judging.verdict import Outcome
 from verification.regression.number_drift import State
 from verification.regression.run_comparison import RunComparison, compare_runs, comparison_message

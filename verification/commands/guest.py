@@ -15,12 +15,18 @@ from rich.markup import escape
 
 from verification.cases.case_file import Case, default_cases, read_case
 from verification.commands.common.command_error import CommandError
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import PACKAGE
 from verification.commands.common.named_files import SHIPPED, path_of, require_distinct
 from verification.commands.common.shared_options import AsJson, Flag, Jobs, Quiet
 from verification.commands.common.task_progress import run_info, solve, worker_count
-from verification.commands.common.terminal import STYLE, named_table, one_line, print_json, print_out
+from verification.commands.common.terminal import (
+    STYLE,
+    named_table,
+    one_line,
+    print_json,
+    print_out,
+    with_exit_code,
+)
 from verification.guests.exam_subjects import exact_profile, subject_of
 from verification.guests.examination import Examined, examined, outcome_counts, packed_cases
 from verification.guests.guest_description import FILE, Guest, parse_guest, read_guest
@@ -86,7 +92,7 @@ def pack(folder: Path, /, *cases: str, jobs: Jobs = None, quiet: Quiet = False) 
         folder: Directory to make; files that are there stay as they are.
         cases: Names of shipped cases, see coatcheck list, or .toml files; all shipped ones unless given.
     """
-    jobs = worker_count(jobs, 1.0)
+    jobs = worker_count(jobs)
     chosen = _chosen(cases)
     if not (folder / FILE).exists():
         write_atomically(folder / FILE, PACKED)
@@ -124,7 +130,7 @@ def run(
             ones, for files those that were packed.
         output: Directory of report.html, report.json, junit.xml, badge.svg; GUEST/report unless given.
     """
-    jobs = worker_count(jobs, 1.0)
+    jobs = worker_count(jobs)
     host = read_guest(guest)
     chosen = _chosen(cases or _packed(host))
     folder = output or host.folder / "report"
@@ -169,7 +175,7 @@ def check(guest: str, /, *, output: Folder = None, jobs: Jobs = None, as_json: A
         guest: Directory with a guest.toml, or that file.
         output: Directory of the answers; GUEST/check unless given.
     """
-    jobs = worker_count(jobs, 1.0)
+    jobs = worker_count(jobs)
     host = read_guest(guest)
     folder = output or host.folder / "check"
     names = (UNCOATED[0], *COATED) if host.supports.coatings else UNCOATED

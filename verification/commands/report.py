@@ -7,10 +7,9 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from verification.commands.common.command_error import CommandError
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import BASELINE, RECORDS, nearest_run, within_package
 from verification.commands.common.shared_options import AsJson, Quiet
-from verification.commands.common.terminal import print_files
+from verification.commands.common.terminal import print_files, with_exit_code
 from verification.credibility.self_tests import self_tests
 from verification.regression.baseline_change import regression
 from verification.regression.baseline_file import read_baseline

@@ -16,7 +16,6 @@ from rich.markup import escape
 from verification.cases.case_file import Case
 from verification.cases.published_file import PublishedCase
 from verification.commands.common.command_error import STOPPED
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import BASELINE, RECORDS, within_package
 from verification.commands.common.named_files import chosen_cases
 from verification.commands.common.run_summary import print_run, run_json
@@ -40,7 +39,13 @@ from verification.commands.common.task_progress import (
     solve,
     worker_count,
 )
-from verification.commands.common.terminal import print_error, print_json, print_out, print_warnings
+from verification.commands.common.terminal import (
+    print_error,
+    print_json,
+    print_out,
+    print_warnings,
+    with_exit_code,
+)
 from verification.commands.common.terminal_bar import require_gmsh
 from verification.credibility import accuracy_study
 from verification.credibility.accuracy_study import AccuracyStudy
@@ -92,7 +97,7 @@ def run(
         fields: Also write the fields of each case, for ParaView, into its folder fields.
         verbose: Print the seconds and iterations of every source as the cases finish.
     """
-    jobs, silent = worker_count(jobs, time_limit), quiet or as_json
+    jobs, silent = worker_count(jobs, time_limit=time_limit), quiet or as_json
     output = output.absolute() if scheduler else output  # workers have folders of their own
     chosen = chosen_cases(cases)
     for case in chosen:

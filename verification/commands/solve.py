@@ -19,17 +19,22 @@ from verification.cases.case_file import Case, default_cases, parse_case, read_c
 from verification.cases.plausibility import beyond_limits, refused
 from verification.cases.toml_file import NO_SOURCE, load_toml
 from verification.commands.common.command_error import CommandError, no_result
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import require_format
 from verification.commands.common.named_files import SHIPPED, path_of
 from verification.commands.common.shared_options import AsJson, Flag, Strict
-from verification.commands.common.terminal import print_error, print_json, print_out, print_warnings
+from verification.commands.common.terminal import (
+    print_error,
+    print_json,
+    print_out,
+    print_warnings,
+    with_exit_code,
+)
 from verification.commands.common.terminal_bar import progress_bar, require_gmsh
 from verification.credibility.model_error import ModelError, model_error
 from verification.desk.case_wording import case_text
 from verification.desk.contact_answer import (
-    Answer,
-    Difference,
+    AnswerDifference,
+    ContactAnswer,
     agreement,
     answer,
     differences,
@@ -38,7 +43,7 @@ from verification.desk.contact_answer import (
     with_slicing,
 )
 from verification.desk.layer_limits import LayerLimit, layer_limits, layer_name, yield_strengths
-from verification.desk.stack_text import body_label, conditions, described, outside_verified, stack, units_of
+from verification.desk.stack_text import body_label, described, outside_verified, stack, units_of
 from verification.judging.outcome import Outcome
 from verification.problem.point_answers import FLAT
 from verification.problem.quantity import QUANTITIES
@@ -133,11 +138,8 @@ def solve(
     print_warnings(costs, case.name, strict=strict, silent=as_json)
     if plot is not None:
         from verification.desk.answer_figure import write
-        from verification.desk.section_field import section
 
-        title = f"{stack(case)}\n{conditions(case.problem)}"
-        below = section(case.problem, case.residual)
-        write(stated, title, plot, below, case.names, units_of(case.problem))
+        write(case, stated, plot)
     if as_json:
         content = {  # NaN of a place that does not exist as text
             "title": case.title,
@@ -196,14 +198,14 @@ def _from_options(
     return parse_case(text.encode("utf-8", errors="replace"), Path("options"))
 
 
-def _answer(case: Case, source: str) -> Answer:
+def _answer(case: Case, source: str) -> ContactAnswer:
     try:
         return answer(case.problem, source, case.numerics.get(source), case.residual, case.layers)
     except Exception as error:  # as of any solve
         raise no_result(f"{case.name}: {source}: {message_of(error)}") from None
 
 
-def _limited(case: Case, first: Answer, bars: Callable[[], Progress]) -> tuple[LayerLimit, ...]:
+def _limited(case: Case, first: ContactAnswer, bars: Callable[[], Progress]) -> tuple[LayerLimit, ...]:
     """Strain of each layer, and where it has a yield strength the load at which it begins to yield."""
     strengths = yield_strengths(case.limits)
     with bars() as bar:
@@ -228,7 +230,7 @@ def _yielding(case: Case, limited: Sequence[LayerLimit]) -> Table | None:
     return table if table.row_count else None
 
 
-def _coarser(case: Case) -> tuple[Answer, ...]:
+def _coarser(case: Case) -> tuple[ContactAnswer, ...]:
     """Answers with half and a quarter of the sub-layers of graded coatings; () without any."""
     overs = (2, 4) if case.layers else ()
     return tuple(_answer(parse_case(case.text.encode(), Path(case.name), over), METHOD) for over in overs)
@@ -242,9 +244,9 @@ def _table(words: Sequence[str], figures: Sequence[str]) -> Table:
 
 def _print(
     case: Case,
-    first: Answer,
-    apart: Sequence[Difference],
-    halved: Sequence[Difference],
+    first: ContactAnswer,
+    apart: Sequence[AnswerDifference],
+    halved: Sequence[AnswerDifference],
     limited: Sequence[LayerLimit],
 ) -> None:
     besides = {"elements − this": apart, "half the sub-layers − this": halved}

@@ -1,6 +1,5 @@
 """coatcheck study: parameter studies."""
 
-import os
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -16,24 +15,28 @@ from rich.markup import escape
 from rich.progress import TaskID
 
 from verification.commands.common.command_error import STOPPED, CommandError
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.named_files import path_of
 from verification.commands.common.shared_options import AsJson, Jobs, Output, Quiet, Scheduler, Strict
-from verification.commands.common.task_progress import executor_at
-from verification.commands.common.terminal import print_error, print_json, print_out, print_warnings
+from verification.commands.common.task_progress import executor_at, worker_count
+from verification.commands.common.terminal import (
+    print_error,
+    print_json,
+    print_out,
+    print_warnings,
+    with_exit_code,
+)
 from verification.commands.common.terminal_bar import progress_bar, require_gmsh
 from verification.judging.verdict import Outcome
 from verification.regression.run_exit_codes import EXIT
-from verification.running.provenance import commit, cores, hardware
+from verification.running.provenance import commit, hardware
 from verification.sources.source_registry import SOURCES
 from verification.study.study_plan import Study, read_study_file, shipped_studies
 
 if TYPE_CHECKING:
-    from verification.study.study_engine import Outcome as Solved
+    from verification.study.study_engine import StudyRun
 
 LABELS = {name: source.label for name, source in SOURCES.items()}
 FIGURE_GROUPS = 5
-BUSY = 1.5  # processes a core, beyond which the forecast states the time beside them
 
 
 @Parameter(name="*")
@@ -45,8 +48,6 @@ class Options:
     """Directory of the table, PLAN.parquet, and of the cache."""
     jobs: Jobs = None
     scheduler: Scheduler = None
-    limit: int | None = None
-    """Only the first so many points."""
     cross_check: bool = True
     """Solve every k-th point by finite elements and by the exact reference too."""
     figures: bool = True
@@ -108,12 +109,9 @@ def init(kind: Literal["thickness", "load", "stiffness"], file: Path | None = No
 
 
 def _study(plan: str, options: Options, *, loads: bool) -> int:
-    limit, output, silent = options.limit, options.output, options.quiet or options.as_json
+    output, silent = options.output, options.quiet or options.as_json
     output = output.absolute() if options.scheduler else output  # workers have folders of their own
-    jobs = cores() if options.jobs is None else options.jobs
-    if jobs < 1 or (limit is not None and limit < 1):
-        raise CommandError(f"--jobs = {jobs}, --limit = {limit}; both must be positive")
-    shipped = shipped_studies()
+    jobs, shipped = worker_count(options.jobs), shipped_studies()
     chosen = read_study_file(path_of(plan, shipped, f"study ({', '.join(shipped)})"))
     if loads != (chosen.loads is not None):
         what = "sweeps the load; use coatcheck study load" if chosen.loads else "has no sweep.load"
@@ -134,11 +132,11 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
     begin = time.perf_counter()
     try:
         if not silent:
-            sys.stderr.write(f"coatcheck: {_forecast(chosen, output, jobs, limit)}\n")
+            sys.stderr.write(f"coatcheck: {_forecast(chosen, output, jobs)}\n")
         with executor_at(options.scheduler) as executor, _bars(silent) as (report, drawing):
             again = partial(run_study, folder=output, jobs=jobs, executor=executor, report=report)
-            came = again(chosen, limit=limit)
-            if loads and limit is None:
+            came = again(chosen)
+            if loads:
                 chosen, came = _extended(chosen, came, again)
             facts = [
                 ("solves", f"{came.done} done, {came.kept} from the cache"),
@@ -176,7 +174,7 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
     return EXIT[Outcome.NO_RESULT] if came.failed else EXIT[Outcome.AGREES]
 
 
-def _extended(chosen: Study, came: "Solved", again: "Callable[..., Solved]") -> "tuple[Study, Solved]":
+def _extended(chosen: Study, came: "StudyRun", again: "Callable[..., StudyRun]") -> "tuple[Study, StudyRun]":
     """The study of loads with its outcome, begun lower until every mode is below its strength there."""
     from verification.study.choice.critical_load import extended
     from verification.study.study_table import read_columns
@@ -192,24 +190,18 @@ def _extended(chosen: Study, came: "Solved", again: "Callable[..., Solved]") -> 
     return chosen, came
 
 
-def _forecast(chosen: Study, output: Path, jobs: int, limit: int | None) -> str:
-    """The stages of the study with the time they take, before the first of them starts."""
+def _forecast(chosen: Study, output: Path, jobs: int) -> str:
+    """The solves of the study with the time they take, before the first of them starts."""
     from verification.study.study_engine import forecast
 
-    every, missing, seconds = forecast(chosen, output, limit)
-    parts = []
-    for source, solves in every.items():
-        stored = solves - missing[source]
-        parts.append(f"{solves} {LABELS[source]}" + (f" ({stored} of them stored)" if stored else ""))
-    what = f"{chosen.title}: solves: {', '.join(parts)}, then figures"
-    # each process gets its share of the cores beside what else runs now
-    shares = (os.getloadavg()[0] + jobs) / cores()
-    beside = f", {_rounded(seconds / jobs * shares)} beside the present load" if shares > BUSY else ""
-    return f"{what}; about {_rounded(seconds / jobs)} on {jobs} idle cores{beside}"
-
-
-def _rounded(seconds: float) -> str:
-    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
+    counts, seconds = forecast(chosen, output)
+    parts = [
+        f"{count} {LABELS[source]}" + (f" ({stored} of them stored)" if stored else "")
+        for source, (count, stored) in counts.items()
+    ]
+    usual = seconds / jobs
+    time = f"{usual:.0f} s" if usual < 100 else f"{usual / 60:.0f} min"
+    return f"{chosen.title}: solves: {', '.join(parts)}, then figures; about {time} on {jobs} idle cores"
 
 
 @contextmanager

@@ -10,31 +10,48 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from verification.desk.answer_stresses import Course
-from verification.desk.contact_answer import Answer, Names, with_name
-from verification.desk.section_field import Section
+from verification.cases.case_file import Case
+from verification.desk.answer_stresses import StressCourse, first_principal
+from verification.desk.contact_answer import ContactAnswer, Names, with_name
+from verification.desk.stack_text import conditions, stack, units_of
 from verification.problem.display_units import Units
 from verification.problem.point_answers import FLAT
 from verification.running.checked_files import write_atomically
+from verification.sources.source_registry import METHODS, solvers
 from verification.study.pages.study_figures import COLOURS
+from verification.study.stress_section import StressSection, section
 
+WIDTH, BELOW = 2.0, 0.5  # extents of the section over a
 FORMATS = (".png", ".pdf", ".svg")
 STYLES = ("-", "--", "-.", ":", (0, (6, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 3)))
 _SETTINGS: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "savefig.facecolor": "white"}
 
 
-def write(answer: Answer, title: str, path: Path, below: Section, names: Names, units: Units) -> None:
-    """Write the figure as PNG, PDF or SVG, by the suffix of ``path``; whole or not at all.
+def write(case: Case, answer: ContactAnswer, path: Path) -> None:
+    """Write the figure of the ``answer`` to ``case`` as PNG, PDF or SVG, by the suffix of ``path``.
 
-    below : the section on top.   names : of the coatings, see ``Case``.
+    Solved again for its section by the semi-analytical method. Raises what it raises, and StoreError.
     """
-    content = io.BytesIO()
+    content, units = io.BytesIO(), units_of(case.problem)
+    title = f"{stack(case)}\n{conditions(case.problem)}"
     with mpl.rc_context(_SETTINGS):
-        _drawn(answer, title, below, names, units).savefig(content, format=path.suffix.lower()[1:], dpi=200)
+        drawn = _drawn(answer, title, _seen(case), case.names, units)
+        drawn.savefig(content, format=path.suffix.lower()[1:], dpi=200)
     write_atomically(path, content.getvalue())
 
 
-def _drawn(answer: Answer, title: str, below: Section, names: Names, units: Units) -> Figure:
+def _seen(case: Case) -> StressSection:
+    """The section from the surface to half a contact radius below the deepest interface in sight."""
+    problem = case.problem
+    solution = solvers()[METHODS[0]](problem, {"estimate_uncertainty": False})
+    a = float(solution.contact_radius)
+    # A film is seen by itself: the view is no deeper than three times the stack.
+    stack = problem.interfaces[-1] if problem.coatings else 0.0
+    deepest = min(max(3 * stack, 0.02 * a), stack + BELOW * a) if stack else BELOW * a
+    return section(solution, problem, WIDTH * a, deepest, case.residual.get(FLAT, ()))
+
+
+def _drawn(answer: ContactAnswer, title: str, below: StressSection, names: Names, units: Units) -> Figure:
     """Stresses along x: sigma_xx with its largest values as dots; sigma_xz, sigma_zz at each interface.
 
     For an uncoated body those of the surface, sigma_zz = -p.
@@ -78,44 +95,31 @@ def _drawn(answer: Answer, title: str, below: Section, names: Names, units: Unit
     return figure
 
 
-def _section(figure: Figure, axes: Axes, beside: Axes, below: Section, a: float, units: Units) -> None:
+def _section(figure: Figure, axes: Axes, beside: Axes, below: StressSection, a: float, units: Units) -> None:
     """First principal stress of each layer as a field, with its boundaries and the contact.
 
     beside : axes of the same stress along the depth at the largest tension.
     """
-    least, most = (float(end([end(s) for s in below.stress])) / units.pascal for end in (np.min, np.max))
-    for z, stress in zip(below.z, below.stress, strict=True):
-        field = axes.pcolormesh(
-            below.x / units.metre,
-            z / units.metre,
-            stress / units.pascal,
-            cmap="cividis",  # from dark to bright in grey too
-            vmin=least,
-            vmax=most,
-            shading="gouraud",
-            rasterized=True,
-        )
-        axes.contour(
-            below.x / units.metre, z / units.metre, stress, levels=[0.0], colors="white", linewidths=1.0
-        )
-        axes.axhline(z[0] / units.metre, color="black", linewidth=0.8)
-    highest = max(
-        (float(s.max()), float(below.x[s.max(axis=0).argmax()]), float(z[s.max(axis=1).argmax()]))
-        for z, s in zip(below.z, below.stress, strict=True)
-    )
-    axes.plot(highest[1] / units.metre, highest[2] / units.metre, "k^", markersize=6, clip_on=False)
-    column = int(np.argmin(np.abs(below.x - highest[1])))
-    for z, stress in zip(below.z, below.stress, strict=True):
-        beside.plot(stress[:, column] / units.pascal, z / units.metre, color=COLOURS[0])
-        beside.axhline(z[0] / units.metre, color="black", linewidth=0.8)
-    beside.plot(highest[0] / units.pascal, highest[2] / units.metre, "k^", markersize=6, clip_on=False)
-    beside.set_ylim(float(below.z[-1][-1]) / units.metre, 0.0)
-    beside.set_title(
-        f"σ$_1$ [{units.stress}] at x = {highest[1] / units.metre:.2f} {units.length}", fontsize=8
-    )
+    fields = [first_principal(s) / units.pascal for s in below.stress]
+    depths, x = [z / units.metre for z in below.z], below.x / units.metre
+    least, most = min(float(s.min()) for s in fields), max(float(s.max()) for s in fields)
+    layer = int(np.argmax([s.max() for s in fields]))
+    row, column = np.unravel_index(int(fields[layer].argmax()), fields[layer].shape)
+    highest, x_at, z_at = fields[layer][row, column], float(x[column]), float(depths[layer][row])
+    for z, stress in zip(depths, fields, strict=True):
+        scale: Any = {"cmap": "cividis", "vmin": least, "vmax": most}  # from dark to bright in grey too
+        field = axes.pcolormesh(x, z, stress, shading="gouraud", rasterized=True, **scale)
+        axes.contour(x, z, stress, levels=[0.0], colors="white", linewidths=1.0)
+        beside.plot(stress[:, column], z, color=COLOURS[0])
+        for one in (axes, beside):
+            one.axhline(z[0], color="black", linewidth=0.8)
+    axes.plot(x_at, z_at, "k^", markersize=6, clip_on=False)
+    beside.plot(highest, z_at, "k^", markersize=6, clip_on=False)
+    beside.set_title(f"σ$_1$ [{units.stress}] at x = {x_at:.2f} {units.length}", fontsize=8)
     beside.tick_params(labelbottom=True, labelleft=False)
     axes.plot([-a, a], [0, 0], color="black", linewidth=4, solid_capstyle="butt", clip_on=False)
-    axes.set_ylim(float(below.z[-1][-1]) / units.metre, 0.0)
+    for one in (axes, beside):
+        one.set_ylim(float(depths[-1][-1]), 0.0)
     axes.set_ylabel(f"z [{units.length}]")
     axes.grid(visible=False)
     axes.set_title(
@@ -124,12 +128,12 @@ def _section(figure: Figure, axes: Axes, beside: Axes, below: Section, a: float,
     figure.colorbar(field, ax=beside, label=f"$σ_1$ [{units.stress}]", fraction=0.1)
 
 
-def _name(course: Course, names: Names) -> str:
+def _name(course: StressCourse, names: Names) -> str:
     where = with_name(course.body, course.where, names)
     return where if course.body == FLAT else f"{course.body}, {where}"
 
 
-def _cycle(courses: Sequence[Course]) -> Iterator[tuple[Course, str, Any]]:
+def _cycle(courses: Sequence[StressCourse]) -> Iterator[tuple[StressCourse, str, Any]]:
     """Each course with its colour and line style, which differ without colour too."""
     for i, course in enumerate(courses):
         yield course, COLOURS[i % len(COLOURS)], STYLES[i % len(STYLES)]

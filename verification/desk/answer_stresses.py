@@ -27,8 +27,8 @@ from verification.study.friction_planes import (
     XZ,
     YY,
     ZZ,
+    DepthLine,
     Parts,
-    Plane,
     inner_planes,
     outer_planes,
     stress_at,
@@ -68,7 +68,7 @@ class Extreme:
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class StressCourse:
     """sigma_xx, sigma_yy, sigma_zz, sigma_xz [Pa], (4, n), along ``x`` [m] at one place as of ``Extreme``."""
 
     body: str
@@ -88,7 +88,7 @@ def stresses(
     problem: CoatedContact,
     residual: Mapping[str, tuple[float, ...]] | None = None,
     layers: Mapping[str, tuple[int, ...]] | None = None,
-) -> tuple[tuple[Extreme, ...], tuple[Course, ...]]:
+) -> tuple[tuple[Extreme, ...], tuple[StressCourse, ...]]:
     """Every largest stress of ``solution``, first of the flat from its surface down, then of an elastic ball.
 
     With them the stresses along x on the surface, both sides of each interface, out to 2 a.
@@ -109,7 +109,7 @@ def stresses(
             stress = line(turned * x, seen.friction)
             stress[[XX, YY]] += layered.residual[line.layer]
             stress[XZ] *= turned
-            drawn.append(Course(body, where, x, stress))
+            drawn.append(StressCourse(body, where, x, stress))
     return tuple(found), tuple(drawn)
 
 
@@ -144,7 +144,7 @@ class _Layers:
     def name(self, number: int) -> str:
         return "substrate" if number == len(self.bounds) - 1 else f"coating {number + 1}"
 
-    def lines(self) -> Iterator[tuple[str, Plane]]:
+    def lines(self) -> Iterator[tuple[str, DepthLine]]:
         yield "surface", self.tops[0]
         for number, k in enumerate(self.bounds[1:]):
             yield f"base of {self.name(number)}", self.bases[k - 1]
@@ -198,7 +198,7 @@ class _Layers:
         excess = 0.0 if outer else near[-1] - near[-2]
         return self._shown(replace(at, uncertainty=at.uncertainty + excess), layers[best])
 
-    def _between(self, planes: list[Plane], measure: Measure) -> list[Located]:
+    def _between(self, planes: list[DepthLine], measure: Measure) -> list[Located]:
         """The largest on the planes between, moved to the vertex in depth; none where an outer plane has it.
 
         Unlike ``inside`` it needs no interpolation in depth, whose error exceeds a small sigma_1 under strong

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from verification.desk.answer_stresses import Course, Extreme, stresses
+from verification.desk.answer_stresses import Extreme, StressCourse, stresses
 from verification.desk.stack_text import units_of
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.display_units import Units
@@ -24,7 +24,7 @@ Names = Mapping[str, tuple[str, ...]]  # of the coatings of each body, see ``Cas
 
 
 @dataclass(frozen=True)
-class Answer:
+class ContactAnswer:
     """What ``source`` answers: ``numbers`` as (value, uncertainty) by name, SI; extremes, courses.
 
     An uncertainty is None where the source states none.   strains : the largest strain of each layer.
@@ -34,12 +34,12 @@ class Answer:
     seconds: float
     numbers: dict[str, tuple[float, float | None]]
     extremes: tuple[Extreme, ...]
-    courses: tuple[Course, ...]
+    courses: tuple[StressCourse, ...]
     strains: tuple[Extreme, ...] = ()
 
 
 @dataclass(frozen=True)
-class Difference:
+class AnswerDifference:
     """``value`` of a second answer less the first [SI], of ``key`` as of ``differences``.
 
     within : whether its magnitude is at most the sum of both uncertainties.
@@ -56,7 +56,7 @@ def answer(
     numerics: Mapping[str, Any] | None = None,
     residual: Mapping[str, tuple[float, ...]] | None = None,
     layers: Mapping[str, tuple[int, ...]] | None = None,
-) -> Answer:
+) -> ContactAnswer:
     """Solve ``problem`` by ``source``, find its largest stresses; ``residual``, ``layers`` as there.
 
     Raises what the source raises.
@@ -67,10 +67,10 @@ def answer(
     found, drawn = stresses(solution, problem, residual, layers)
     strains = tuple(at for at in found if at.quantity == "strain")
     extremes = tuple(at for at in found if at.quantity != "strain")
-    return Answer(source, time.perf_counter() - begin, numbers, extremes, drawn, strains)
+    return ContactAnswer(source, time.perf_counter() - begin, numbers, extremes, drawn, strains)
 
 
-def differences(first: Answer, second: Answer) -> tuple[Difference, ...]:
+def differences(first: ContactAnswer, second: ContactAnswer) -> tuple[AnswerDifference, ...]:
     """Differences of two answers to one problem: keys (name,), or (body, quantity, where) of extremes."""
     pairs: dict[tuple[str, ...], list[tuple[float, float]]] = {}
     for one in (first, second):
@@ -79,11 +79,11 @@ def differences(first: Answer, second: Answer) -> tuple[Difference, ...]:
         for at in one.extremes:
             pairs.setdefault((at.body, at.quantity, at.where), []).append((at.value, at.uncertainty))
     return tuple(
-        Difference(key, b - a, abs(b - a) <= U_a + U_b) for key, ((a, U_a), (b, U_b)) in pairs.items()
+        AnswerDifference(key, b - a, abs(b - a) <= U_a + U_b) for key, ((a, U_a), (b, U_b)) in pairs.items()
     )
 
 
-def with_slicing(found: Answer, coarser: Sequence[Answer]) -> Answer:
+def with_slicing(found: ContactAnswer, coarser: Sequence[ContactAnswer]) -> ContactAnswer:
     """An answer for graded coatings with the uncertainty of their slicing added to those of the numbers.
 
     coarser : with half and with a quarter of the sub-layers; () where no coating is graded.
@@ -110,7 +110,7 @@ def usual_seconds(problem: CoatedContact) -> float:
 ON_AXIS = 5e-3  # of a place from the axis, over a
 
 
-def summary(problem: CoatedContact, found: Answer, names: Names) -> str:
+def summary(problem: CoatedContact, found: ContactAnswer, names: Names) -> str:
     """Where both bodies are pulled and yield the most, and the interfaces are sheared, in three digits.
 
     The largest tension of a coating comes first, then that of all where it is elsewhere; then the largest
@@ -151,7 +151,7 @@ def with_name(body: str, where: str, names: Names) -> str:
     return where
 
 
-def agreement(first: Answer, apart: tuple[Difference, ...]) -> str:
+def agreement(first: ContactAnswer, apart: tuple[AnswerDifference, ...]) -> str:
     """Whether both methods agree, and within what: shares of p0 and of each length; "" without a check."""
     if not apart:
         return ""
@@ -169,7 +169,7 @@ def agreement(first: Answer, apart: tuple[Difference, ...]) -> str:
     )
 
 
-def _ranked(found: Answer, quantity: str, where: str = "") -> list[Extreme]:
+def _ranked(found: ContactAnswer, quantity: str, where: str = "") -> list[Extreme]:
     """The extremes of ``quantity`` at places that begin with ``where``, the largest first."""
     those = [at for at in found.extremes if at.quantity == quantity and at.where.startswith(where)]
     return sorted(those, key=lambda at: -at.value)

@@ -12,7 +12,7 @@ from typing import Any
 from verification.cases.case_file import Case
 from verification.cases.plausibility import as_stress, beyond_limits, strain_warning
 from verification.desk.answer_stresses import Extreme
-from verification.desk.contact_answer import Answer, answer, summary, with_name
+from verification.desk.contact_answer import ContactAnswer, answer, summary, with_name
 from verification.desk.stack_text import body_label
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.point_answers import BALL, FLAT
@@ -112,7 +112,7 @@ def yield_strengths(limits: Mapping[str, float]) -> Strengths:
 
 def layer_limits(
     problem: CoatedContact,
-    first: Answer,
+    first: ContactAnswer,
     strengths: Strengths,
     numerics: Mapping[str, Any] | None = None,
     residual: Mapping[str, tuple[float, ...]] | None = None,
@@ -146,7 +146,7 @@ def layer_limits(
     return tuple(found)
 
 
-def _von_mises(found: Answer) -> dict[tuple[str, str], float]:
+def _von_mises(found: ContactAnswer) -> dict[tuple[str, str], float]:
     return {(at.body, at.where): at.value for at in found.extremes if at.quantity == "von_mises"}
 
 

@@ -75,7 +75,7 @@ def in_plane(sigma: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class Plane:
+class DepthLine:
     """Stress at one depth in one layer as a function of x and f.
 
     knots : radii [m] of the samples.   fine, coarse : sigma_n and sigma_t over r, (4,) + shape of r, from all
@@ -120,7 +120,9 @@ def stress_at(parts: Parts, x: Array, z: Array, layer: int, friction: float) -> 
     return stress, parts.uncertainty(np.where(x < 0, bound[::-1], bound), friction)
 
 
-def outer_planes(parts: Parts, interfaces: Sequence[float], h: float) -> tuple[list[Plane], list[Plane]]:
+def outer_planes(
+    parts: Parts, interfaces: Sequence[float], h: float
+) -> tuple[list[DepthLine], list[DepthLine]]:
     """The planes on the upper side of each layer, and those on the lower side of each coating.
 
     interfaces : depths [m], from the surface down.   h : thickness of the first coating, a of a bare body.
@@ -134,7 +136,7 @@ def outer_planes(parts: Parts, interfaces: Sequence[float], h: float) -> tuple[l
     return tops, bases
 
 
-def inner_planes(parts: Parts, interfaces: Sequence[float], layer: int) -> tuple[list[Plane], Array]:
+def inner_planes(parts: Parts, interfaces: Sequence[float], layer: int) -> tuple[list[DepthLine], Array]:
     """The planes below the top of ``layer`` and above the base of a coating, with their knots."""
     a, top = float(parts.solution.contact_radius), (0.0, *interfaces)[layer]
     if layer < len(interfaces):
@@ -164,7 +166,7 @@ def _depths(top: float, bottom: float, width: float) -> Array:
     return z
 
 
-def _planes(parts: Parts, knots: Array, depths: Array, layer: int) -> list[Plane]:
+def _planes(parts: Parts, knots: Array, depths: Array, layer: int) -> list[DepthLine]:
     """Planes at ``depths`` > 0, sampled at ``knots``, together: those around one point share its rings."""
     r, z = np.broadcast_arrays(knots, depths[:, None])
     normal, tangential, bound = parts(r, z, layer)
@@ -175,12 +177,12 @@ def _planes(parts: Parts, knots: Array, depths: Array, layer: int) -> list[Plane
 
     every, half = np.arange(knots.size), _every_other(knots.size)
     return [
-        Plane(parts, float(at), layer, knots, curves(i, every), curves(i, half), bound[:, :, i])
+        DepthLine(parts, float(at), layer, knots, curves(i, every), curves(i, half), bound[:, :, i])
         for i, at in enumerate(depths)
     ]
 
 
-def _surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
+def _surface(parts: Parts, a: float, h: float, reach: float) -> DepthLine:
     """The surface out to a + ``reach`` under a contact of radius ``a``, on a coating of thickness ``h``.
 
     Splines in theta = arcsin(r/a) inside, eta = arcosh(r/a) outside: the roots of the edge are smooth there.
@@ -210,7 +212,7 @@ def _surface(parts: Parts, a: float, h: float, reach: float) -> Plane:
     def curves(keep: Callable[[int], NDArray[np.int_]]) -> tuple[Curve, Curve]:
         return joined(normal, PARITY, keep), joined(tangential, -PARITY, keep)
 
-    return Plane(parts, 0.0, 0, knots, curves(np.arange), curves(_every_other), bound[:, :, : knots.size])
+    return DepthLine(parts, 0.0, 0, knots, curves(np.arange), curves(_every_other), bound[:, :, : knots.size])
 
 
 def _change(parts: Parts) -> Array | None:

@@ -16,7 +16,16 @@ from scipy.optimize import minimize_scalar
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.quantity import von_mises
-from verification.study.friction_planes import XX, XZ, ZZ, Parts, Plane, inner_planes, outer_planes, stress_at
+from verification.study.friction_planes import (
+    XX,
+    XZ,
+    ZZ,
+    DepthLine,
+    Parts,
+    inner_planes,
+    outer_planes,
+    stress_at,
+)
 
 Measure = Callable[[Array], Array]
 
@@ -67,7 +76,7 @@ def quantities(
     z, n = problem.interfaces, len(problem.coatings)
     tops, bases = outer_planes(parts, z, z[0])
     inner = [inner_planes(parts, z, layer) for layer in range(n + 1)]
-    lines: dict[str, tuple[list[Plane], Measure]] = {
+    lines: dict[str, tuple[list[DepthLine], Measure]] = {
         "sigma_xx_surface": (tops[:1], lambda s: s[XX]),
         "sigma_xx_base": (bases, lambda s: s[XX]),
         "sigma_xx_substrate": (tops[-1:], lambda s: s[XX]),
@@ -110,7 +119,7 @@ def with_residual(measure: Measure, residual: float) -> Measure:
     return lambda s: measure(s + added.reshape(4, *[1] * (s.ndim - 1)))
 
 
-def largest(line: Plane, measure: Measure, friction: float) -> Located:
+def largest(line: DepthLine, measure: Measure, friction: float) -> Located:
     """The largest ``measure`` of the stresses along a line."""
     x = _both_sides(line.knots, DENSE)
     value = measure(line(x, friction))
@@ -130,7 +139,7 @@ def largest(line: Plane, measure: Measure, friction: float) -> Located:
 
 
 def inside(
-    parts: Parts, planes: Sequence[Plane], knots: Array, friction: float, measure: Measure
+    parts: Parts, planes: Sequence[DepthLine], knots: Array, friction: float, measure: Measure
 ) -> list[Located]:
     """The largest ``measure`` between the planes of a layer; none where it lies on an outer one."""
     x = _both_sides(knots, FINE)

@@ -8,7 +8,6 @@ of that name, written whole or not at all, with its checksum and its request.
 import hashlib
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -42,38 +41,23 @@ def solve_key(request: Mapping[str, Any]) -> str:
     return hashlib.sha256(f"{canonical}\n{code}".encode()).hexdigest()
 
 
-@dataclass(frozen=True)
-class Cache:
-    """Answers under ``folder``, one file each."""
-
-    folder: Path
-
-    def path(self, key: str) -> Path:
-        """Path of the answer of ``key``."""
-        return self.folder / key[:2] / f"{key}.json"
-
-    def has(self, key: str) -> bool:
-        """True where there is a file for ``key``, damaged or not."""
-        return self.path(key).is_file()
-
-    def get(self, key: str, request: Mapping[str, Any]) -> dict[str, Any]:
-        """The answer of ``key``. Raises StoreError where it is missing, damaged or of another request."""
-        path = self.path(key)
-        stored = read_checked(path)
-        if stored.get("key") != key or stored.get("request") != json.loads(json.dumps(request)):
-            raise StoreError(f"{path}: holds another solve than its name states; delete it")
-        return stored["answer"]
-
-    def put(self, key: str, request: Mapping[str, Any], answer: Mapping[str, Any]) -> None:
-        """Store an answer. Raises StoreError where it cannot be written."""
-        content = {"key": key, "request": dict(request), "answer": _without_nan(dict(answer))}
-        write_checked(self.path(key), content)
+def stored_path(folder: Path, key: str) -> Path:
+    """Path of the answer of ``key`` in the directory of a study."""
+    return folder / "cache" / key[:2] / f"{key}.json"
 
 
-def _without_nan(value: Any) -> Any:
-    """``value`` with null for NaN, which strict JSON lacks."""
-    if isinstance(value, dict):
-        return {key: _without_nan(item) for key, item in value.items()}
-    if isinstance(value, list):
-        return [_without_nan(item) for item in value]
-    return None if isinstance(value, float) and value != value else value
+def read_answer(path: Path, request: Mapping[str, Any]) -> dict[str, Any]:
+    """The answer at ``path``. Raises StoreError where it is missing, damaged or of another request."""
+    stored = read_checked(path)
+    if stored.get("key") != path.stem or stored.get("request") != json.loads(json.dumps(request)):
+        raise StoreError(f"{path}: holds another solve than its name states; delete it")
+    answer: dict[str, Any] = stored["answer"]
+    return answer
+
+
+def write_answer(path: Path, request: Mapping[str, Any], answer: Mapping[str, Any]) -> None:
+    """Store an answer, with null for NaN, which strict JSON lacks. Raises StoreError."""
+    rows = [
+        {name: None if value != value else value for name, value in row.items()} for row in answer["rows"]
+    ]
+    write_checked(path, {"key": path.stem, "request": dict(request), "answer": {**answer, "rows": rows}})

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from functools import partial
-from itertools import groupby, takewhile
+from itertools import groupby
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -20,7 +20,7 @@ from verification.running.checked_files import StoreError, locked
 from verification.running.pool.pool_task import Task
 from verification.running.pool.process_pool import run_tasks
 from verification.sources.source_registry import SOURCES as RECORDS
-from verification.study.solve_cache import Cache
+from verification.study.solve_cache import read_answer, stored_path, write_answer
 from verification.study.study_plan import Solve, Study
 from verification.study.study_point import answer, failed_rows, table_rows
 from verification.study.study_table import SOURCES, write_table
@@ -32,7 +32,7 @@ Report = Callable[[str, int, int], None]  # source, points done, points in all
 
 
 @dataclass
-class Outcome:
+class StudyRun:
     """Outcome of a run of a study, brought up to date while it runs.
 
     done, kept : solves answered by this run, found in the cache.
@@ -51,26 +51,16 @@ class Outcome:
     complete: bool = False
 
 
-def forecast(
-    study: Study, folder: Path, limit: int | None = None
-) -> tuple[Counter[str], Counter[str], float]:
-    """Solves of ``study`` by source, those that are missing in ``folder``, the usual seconds of these."""
-    cache, solves = Cache(folder / "cache"), _requested(study, limit)
-    missing = Counter(one.source for one in solves if not cache.has(one.key))
-    seconds = sum(USUAL[source] * count for source, count in missing.items())
-    return Counter(one.source for one in solves), missing, seconds * _effort(study)
-
-
-def _effort(study: Study) -> float:
-    """Usual time of a solve of ``study`` over ``USUAL``, by its thin films, at the middle thickness."""
-    on_ball = study.ball[2] if study.ball else ()
-    held = [h for *_, h in (*study.above, *study.below, *on_ball)]
-    return 1 + PER_FILM * sum(h < THIN * study.bare.a_h for h in (median(study.thicknesses), *held))
-
-
-def _requested(study: Study, limit: int | None) -> list[Solve]:
-    """The solves of the first ``limit`` points, in the order of the table."""
-    return list(takewhile(lambda one: limit is None or one.first < limit, study.solves()))
+def forecast(study: Study, folder: Path) -> tuple[dict[str, tuple[int, int]], float]:
+    """By source the solves of ``study`` and how many ``folder`` holds; the usual seconds of the others."""
+    solves = list(study.solves())
+    every = Counter(one.source for one in solves)
+    stored = Counter(one.source for one in solves if stored_path(folder, one.key).is_file())
+    seconds = sum(USUAL[source] * (count - stored[source]) for source, count in every.items())
+    held = [h for *_, h in (*study.held, *(study.ball[2] if study.ball else ()))]
+    thin = sum(h < THIN * study.bare.a_h for h in (median(study.thicknesses), *held))
+    counts = {source: (count, stored[source]) for source, count in every.items()}
+    return counts, seconds * (1 + PER_FILM * thin)
 
 
 def table_path(folder: Path, study: Study) -> Path:
@@ -84,116 +74,102 @@ def run_study(
     jobs: int,
     *,
     executor: Executor | None = None,
-    limit: int | None = None,
     report: Report = lambda source, done, total: None,
-) -> Outcome:
+) -> StudyRun:
     """Solve the part of ``study`` that is not in the cache under ``folder`` and write its table.
 
-    jobs : processes side by side.   executor : as in ``run_tasks``.   limit : only the first so many points.
+    jobs : processes side by side.   executor : as in ``run_tasks``.
     Raises StoreError where ``folder`` cannot be written or another run holds it, KeyboardInterrupt after
     writing the table of the stored answers.
     """
+    solves, run = list(study.solves()), StudyRun(table_path(folder, study), study.points)
     with locked(folder):
-        run = _Run(study, folder, limit, report)
         try:
-            run.solve_missing(jobs, executor)
-            run.outcome.complete = limit is None
+            _solve_missing(run, solves, folder, report, jobs, executor)
+            run.complete = True
         finally:
-            run.write_table()
-    return run.outcome
+            about = {"name": study.name, "text": study.text, "points": run.points, "complete": run.complete}
+            run.rows = write_table(run.table, _rows(run, solves, folder), about)
+    return run
 
 
-class _Run:
-    """State of one run."""
+def _solve_missing(
+    run: StudyRun, solves: list[Solve], folder: Path, report: Report, jobs: int, executor: Executor | None
+) -> None:
+    """Solve what is not in the cache, equal solves once: first the curves, then their checks."""
+    total, done = Counter[str](), Counter[str]()
+    for one in solves:
+        total[one.source] += one.points
 
-    def __init__(self, study: Study, folder: Path, limit: int | None, report: Report) -> None:
-        points = study.points if limit is None else min(limit, study.points)
-        self.study, self.report, self.cache = study, report, Cache(folder / "cache")
-        self.solves = _requested(study, limit)
-        self.outcome = Outcome(table_path(folder, study), points)
-        self.total, self.finished = Counter[str](), Counter[str]()
-        for one in self.solves:
-            self.total[one.source] += self.covered(one)
-        for source, total in self.total.items():
-            report(source, 0, total)
+    def count(one: Solve) -> None:
+        done[one.source] += one.points
+        report(one.source, done[one.source], total[one.source])
 
-    def covered(self, one: Solve) -> int:
-        """Number of requested points that a solve covers."""
-        return min(one.points, self.outcome.points - one.first)
+    for source in total:
+        report(source, 0, total[source])
+    waiting: dict[str, list[Solve]] = {}
+    for one in sorted(solves, key=lambda one: SOURCES.index(one.source)):
+        if one.key not in waiting and _kept(run, stored_path(folder, one.key), one.request):
+            count(one)
+        else:
+            waiting.setdefault(one.key, []).append(one)
 
-    def solve_missing(self, jobs: int, executor: Executor | None) -> None:
-        """Solve what is not in the cache, equal solves once: first the curves, then their checks."""
-        waiting: dict[str, list[Solve]] = {}
-        for one in sorted(self.solves, key=lambda one: SOURCES.index(one.source)):
-            if one.key in waiting or not self._stored(one):
-                waiting.setdefault(one.key, []).append(one)
-            else:
-                self._count(one)
+    def finished(key: str, reason: str | None) -> None:
+        # A solver's failure is an answer; that of a process is not stored, and the next run solves again.
+        if reason is None:
+            run.done += 1
+        else:
+            run.lost[key] = reason
+        for one in waiting[key]:
+            count(one)
 
-        def finished(key: str, reason: str | None) -> None:
-            # A solver's failure is an answer; that of a process is not stored, and the next run solves again.
-            if reason is None:
-                self.outcome.done += 1
-            else:
-                self.outcome.lost[key] = reason
-            for one in waiting[key]:
-                self._count(one)
-
-        tasks = [self._task(equal[0]) for equal in waiting.values()]
-        run_tasks(tasks, jobs=jobs, time_limit=math.inf, executor=executor, finished=finished)
-
-    def _task(self, one: Solve) -> Task[str | None]:
-        """Storing the answer to ``one``; its result is the reason why there is none, else None."""
-        return Task(
-            one.key,
-            partial(_solve_and_store, self.cache, one.key, one.request),
-            self.cache.path(one.key),
+    tasks: list[Task[str | None]] = [
+        Task(
+            key,
+            partial(_solve_and_store, stored_path(folder, key), one.request),
+            stored_path(folder, key),
             read=lambda stored: None,
             failed=lambda reason, seconds: reason,
             ahead=(RECORDS[one.source].package,),
         )
+        for key, (one, *_) in waiting.items()
+    ]
+    run_tasks(tasks, jobs=jobs, time_limit=math.inf, executor=executor, finished=finished)
 
-    def _stored(self, one: Solve) -> bool:
-        if not self.cache.has(one.key):
-            return False
+
+def _solve_and_store(path: Path, request: dict[str, Any]) -> None:
+    write_answer(path, request, answer(request))
+
+
+def _kept(run: StudyRun, path: Path, request: dict[str, Any]) -> bool:
+    """Whether the answer is stored; a damaged one is named."""
+    if not path.is_file():
+        return False
+    try:
+        read_answer(path, request)
+    except StoreError as error:
+        run.damaged.append(str(error))
+        return False
+    run.kept += 1
+    return True
+
+
+def _rows(run: StudyRun, solves: list[Solve], folder: Path) -> Iterator[dict[str, Any]]:
+    """Rows of everything stored, in the order of the points."""
+    for _, sources in groupby(solves, key=lambda one: one.first):
+        rows = [row for one in sources for row in _rows_of(run, one, folder)]
+        for row in sorted(rows, key=lambda row: row["point"]):
+            run.failed += row["status"] == "failed"
+            yield row
+
+
+def _rows_of(run: StudyRun, one: Solve, folder: Path) -> list[dict[str, Any]]:
+    if one.key in run.lost:
+        failed = failed_rows(one.request, run.lost[one.key])
+        found: dict[str, Any] = {"rows": failed, "seconds": 0.0, "versions": {}}
+    else:
         try:
-            self.cache.get(one.key, one.request)
-        except StoreError as error:
-            self.outcome.damaged.append(str(error))
-            return False
-        self.outcome.kept += 1
-        return True
-
-    def _count(self, one: Solve) -> None:
-        """Report the points that a finished solve covers."""
-        self.finished[one.source] += self.covered(one)
-        self.report(one.source, self.finished[one.source], self.total[one.source])
-
-    def write_table(self) -> None:
-        """Write the rows of everything stored, in the order of the points."""
-        outcome = self.outcome
-        about: dict[str, Any] = {"name": self.study.name, "text": self.study.text}
-        about |= {"points": outcome.points, "complete": outcome.complete}
-        outcome.rows = write_table(outcome.table, self._rows(), about)
-
-    def _rows(self) -> Iterator[dict[str, Any]]:
-        for _, sources in groupby(self.solves, key=lambda one: one.first):
-            rows = [row for one in sources for row in self._rows_of(one)]
-            for row in sorted(rows, key=lambda row: row["point"]):
-                self.outcome.failed += row["status"] == "failed"
-                yield row
-
-    def _rows_of(self, one: Solve) -> list[dict[str, Any]]:
-        if one.key in self.outcome.lost:
-            failed = failed_rows(one.request, self.outcome.lost[one.key])
-            found: dict[str, Any] = {"rows": failed, "seconds": 0.0, "versions": {}}
-        else:
-            try:
-                found = self.cache.get(one.key, one.request)
-            except StoreError:
-                return []  # not solved yet
-        return table_rows(one.first, one.key, one.request, found, one.places)[: self.covered(one)]
-
-
-def _solve_and_store(cache: Cache, key: str, request: dict[str, Any]) -> None:
-    cache.put(key, request, answer(request))
+            found = read_answer(stored_path(folder, one.key), one.request)
+        except StoreError:
+            return []  # not solved yet
+    return table_rows(one.first, one.key, one.request, found, one.places)

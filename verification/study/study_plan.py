@@ -70,8 +70,9 @@ class Study:
 
     loads : smallest and largest [N], number for each thickness; None for ``load`` alone.
     asked_from : smallest load of the file, where ``loads`` were extended below it.
-    above, below : fixed coatings over and under the swept one.   halved : those and the ball with half of the
-    sub-layers of graded coatings, whose change is part of every uncertainty; {} where none is graded.
+    held : fixed coatings, the first ``swept`` of them above the swept one.
+    halved : those and the ball with half of the sub-layers of graded coatings, whose change is part of every
+    uncertainty; {} where none is graded.
     residual : stress [Pa] of the coating of each modulus, () for none.
     cross_check : every point whose number is a multiple is also solved by the other sources; 0 none.
     ball : None is rigid, or as of CoatedContact.
@@ -94,8 +95,8 @@ class Study:
     asked_from: float | None = None
     residual: tuple[float, ...] = ()
     ball: Ball | None = None
-    above: Coatings = ()
-    below: Coatings = ()
+    held: Coatings = ()
+    swept: int = 0
     halved: dict[str, Any] = field(default_factory=dict)
     cross_check: int = 10
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
@@ -106,11 +107,6 @@ class Study:
     hardness: Limits = field(default_factory=dict)
     names: dict[str, str] = field(default_factory=dict)
     units: Units = field(default_factory=Units)
-
-    @property
-    def fixed(self) -> dict[str, Coatings]:
-        """The fixed coatings ``above`` and ``below`` the swept one."""
-        return {"above": self.above, "below": self.below}
 
     @property
     def bare(self) -> CoatedContact:
@@ -153,7 +149,7 @@ class Study:
             step = len(places) * len(self.frictions)
             checked = self.cross_check and -(-first // self.cross_check) * self.cross_check < first + step
             # Of thin films in a stack the exact reference takes minutes.
-            checks = METHODS if self.above or self.below else SOURCES
+            checks = METHODS if self.held else SOURCES
             for source in checks if checked else SOURCES[:1]:
                 request = {
                     "source": source,
@@ -161,7 +157,7 @@ class Study:
                     "radius": self.radius,
                     "load": load,
                     "coating": [E, self.coating_nu, thickness],
-                    **{side: plain(fixed) for side, fixed in self.fixed.items() if fixed},
+                    **({"held": plain(self.held), "swept": self.swept} if self.held else {}),
                     "residual": residual,
                     "substrate": list(self.substrate),
                     "ball": plain(self.ball),
@@ -184,7 +180,7 @@ def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...
 Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
-class _Problem(Sized):
+class _SweptProblem(Sized):
     load: Newtons | None = None
     substrate: Material
     coating: Coating | None = None
@@ -193,7 +189,7 @@ class _Problem(Sized):
     temperature_change: solid_schema.TemperatureChange | None = None
 
     @model_validator(mode="after")
-    def _one_swept(self) -> "_Problem":
+    def _one_swept(self) -> "_SweptProblem":
         if (self.coating is None) == (not self.coatings):
             raise ValueError("needs exactly one of coating or coatings")
         for i, one in enumerate(self.coatings, start=1):
@@ -234,10 +230,17 @@ class _Problem(Sized):
         """E of the coating that is swept; None where it is swept too."""
         return self.varied.E if isinstance(self.varied.E, float) else None
 
-    def held(self, a_h: float, over: int = 1) -> tuple[Coatings, Coatings]:
-        """The coatings above and below the swept one; ``over`` divides the number of sub-layers."""
-        above, below = self.coatings[: self.swept], self.coatings[self.swept + 1 :]
-        return in_metres(above, a_h, over), in_metres(below, a_h, over)
+    def held(self, a_h: float, over: int = 1) -> dict[str, Any]:
+        """The coatings beside the swept one, how many are above it, and the ball.
+
+        over : divisor of the number of sub-layers.
+        """
+        above, below = (
+            in_metres(some, a_h, over)
+            for some in (self.coatings[: self.swept], self.coatings[self.swept + 1 :])
+        )
+        ball = self.ball.coated(a_h, over) if self.ball else None
+        return {"held": (*above, *below), "swept": len(above), "ball": ball}
 
     def graded(self) -> bool:
         """Whether a coating beside the swept one is graded."""
@@ -306,7 +309,7 @@ class _Fem(Strict):
 class _StudyFile(Strict):
     title: Text
     source: Text = NO_SOURCE
-    problem: _Problem
+    problem: _SweptProblem
     sweep: _Sweep
     semianalytic: _Semianalytic = _Semianalytic()
     fem_reference: _Fem = _Fem()
@@ -342,7 +345,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
     try:
         substrate = (p.substrate.E, p.substrate.nu)
         bare = CoatedContact(p.size, load, (), substrate, ball=p.ball.bare if p.ball else None)
-        ball = p.ball.coated(bare.a_h) if p.ball else None
+        around = p.held(bare.a_h)
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from None
     if (p.modulus is None) == (sweep.modulus_ratio is None):
@@ -353,7 +356,8 @@ def parse_study(raw: bytes, path: Path) -> Study:
         residual = tuple(p.varied.residual(E, p.varied.nu, below, p.temperature_change) for E in moduli)
     except ValueError as error:
         raise CaseError(f"{path}: coating: {error}") from None
-    refuse_unfit_scales(path, replace(bare, ball=ball))
+    held, swept, ball = around.values()
+    refuse_unfit_scales(path, replace(bare, coatings=held, ball=ball))
     asked: list[float] | _Range | None = sweep.thickness
     key, scale = "thickness", 1.0
     if asked is None:
@@ -366,12 +370,10 @@ def parse_study(raw: bytes, path: Path) -> Study:
         coatings = tuple((moduli[0], p.varied.nu, h) for h in given)
         return likely_slips(replace(bare, coatings=coatings, ball=ball)).replace("coating 1", "coating")
 
-    over, under = p.held(bare.a_h)
-    refuse_unfit_scales(path, replace(bare, coatings=(*over, *under), ball=ball))
     contacts = [bare, replace(bare, load=sweep.load.start)] if sweep.load else [bare]
     ends = {min(thicknesses), max(thicknesses)}
     for one, E, h in product(contacts, {min(moduli), max(moduli)}, sorted(ends)):
-        a = own_radius(replace(one, coatings=(*over, (E, p.varied.nu, h), *under), ball=ball))
+        a = own_radius(replace(one, coatings=(*held[:swept], (E, p.varied.nu, h), *held[swept:]), ball=ball))
         low, high = (bound * a for bound in SUPPORTED)
         if not low <= h <= high:
             shown = Units.of_contact(one, a).shown_length
@@ -394,10 +396,8 @@ def parse_study(raw: bytes, path: Path) -> Study:
         frictions=tuple(sweep.friction),
         loads=(sweep.load.start, sweep.load.to, sweep.load.count) if sweep.load else None,
         residual=residual if any(residual) else (),
-        ball=ball,
-        above=over,
-        below=under,
-        halved=_halved(p, bare.a_h) if p.graded() else {},
+        **around,
+        halved=plain(p.held(bare.a_h, over=2)) if p.graded() else {},
         cross_check=sweep.cross_check,
         numerics={
             source: getattr(checked, source).model_dump(exclude_none=True)
@@ -421,13 +421,6 @@ def parse_study(raw: bytes, path: Path) -> Study:
     if study.points > MOST_POINTS:
         raise CaseError(f"{path}: sweep: {study.points} points; a study has at most {MOST_POINTS}")
     return study
-
-
-def _halved(p: _Problem, a_h: float) -> dict[str, Any]:
-    """The fixed coatings and the ball of a request with half of their sub-layers."""
-    above, below = p.held(a_h, over=2)
-    ball = p.ball.coated(a_h, over=2) if p.ball else None
-    return {"above": plain(above), "below": plain(below), "ball": plain(ball)}
 
 
 def _warnings(

@@ -18,16 +18,15 @@ from verification.running.case_result import message_of
 from verification.running.provenance import versions
 from verification.running.slicing import sliced
 from verification.sources.source_registry import solvers
-from verification.study.largest_stresses import QUANTITIES as STRESSES
 from verification.study.largest_stresses import quantities
-from verification.study.study_table import SCALARS, SCALES
+from verification.study.study_table import OVER, SCALARS, SCALES
 
 
 def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     """Solve ``request`` and find every quantity at each of its frictions.
 
-    request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness), above
-    and below (fixed coatings on either side of it), residual (stresses of the coating [Pa]), substrate
+    request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness), held
+    (fixed coatings, the first ``swept`` of them above it), residual (stresses of the coating [Pa]), substrate
     (E, nu), ball (E, nu, coatings) unless it is rigid, halved (what differs with half of the sub-layers).
     Returns {"rows": [one dictionary for each residual stress, then friction], "seconds", "versions"}; a solve
     that fails leaves its message in every row.
@@ -39,8 +38,7 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     try:
         with threadpool_limits(1):  # the order of sums over threads changes the last digit
             solution = solvers()[request["source"]](problem, request["numerics"])
-            swept = len(request.get("above", ()))
-            rows = _rows(solution, problem, frictions, request["residual"], swept)
+            rows = _rows(solution, problem, frictions, request["residual"], request.get("swept", 0))
             if request.get("halved"):
                 rows = _sliced(rows, answer(halved_request(request))["rows"])
     except Exception as error:  # a point that fails is a row with its message
@@ -79,8 +77,8 @@ def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:
     if ball is not None:
         E, nu, coatings = ball
         ball = E, nu, tuple(tuple(layer) for layer in coatings)
-    above, below = (tuple(map(tuple, request.get(side, ()))) for side in ("above", "below"))
-    coatings = (*above, coating, *below)
+    held, swept = tuple(map(tuple, request.get("held", ()))), request.get("swept", 0)
+    coatings = (*held[:swept], coating, *held[swept:])
     return CoatedContact(request["radius"], request["load"], coatings, substrate, friction, ball)
 
 
@@ -126,45 +124,41 @@ def table_rows(
             "seconds": found["seconds"],
         }
         for row in found["rows"][k * count : (k + 1) * count]:
-            scaled = row if load == solved.load else _scaled(row, solved, bare)
-            rows.append({"point": first + len(rows)} | shared | scaled)
+            rows.append({"point": first + len(rows)} | shared | _scaled(row, solved, bare))
     return rows
 
 
 def _scaled(row: Mapping[str, Any], solved: CoatedContact, bare: CoatedContact) -> dict[str, Any]:
-    """``row`` of ``solved`` at the scales of ``bare``."""
-    factor = {scale: getattr(bare, scale) / getattr(solved, scale) for scale in ("p_h", "a_h", "delta_h")}
-    of = {f"{name}{end}": factor["a_h"] for name in STRESSES for end in ("_x", "_z")}
-    for name, scale in SCALES.items():
-        of |= {name: factor[scale], f"{name}_uncertainty": factor[scale]}
-    return {key: value * of[key] if key in of and value is not None else value for key, value in row.items()}
+    """``row`` of ``solved`` at the scales of ``bare``, its numbers over them too."""
+    found = dict(row)
+    for name, value in row.items():
+        scale = OVER.get(name.removesuffix("_uncertainty"))
+        if scale is not None and value is not None:
+            found[name] = value * (getattr(bare, scale) / getattr(solved, scale))
+            if name in OVER:
+                found[f"{name}_over_{scale}"] = value / getattr(solved, scale)
+    return found
 
 
 def _rows(
     solution: Any, problem: CoatedContact, frictions: list[float], residual: list[float], swept: int
 ) -> list[dict[str, Any]]:
     common: dict[str, Any] = {}
-    for name, scale in SCALARS.items():
+    for name in SCALARS:
         value, spread = solution.sample(None, name)
         if not 0 < value < float("inf"):
             raise ValueError(f"{name} = {value:g}; the solution is no contact")
-        common |= {name: value, f"{name}_over_{scale}": value / getattr(problem, scale)}
-        if spread is not None:
-            common[f"{name}_uncertainty"] = spread
+        common |= {name: value} | ({} if spread is None else {f"{name}_uncertainty": spread})
     rows = []
     found = quantities(solution, problem, frictions, residual, swept)
     for stress, f in product(residual, frictions):
-        located = found[stress, f]
         row: dict[str, Any] = {"friction": f, "status": "solved", "failure": None, **common}
-        for name, at in located.items():
+        for name, at in found[stress, f].items():
             row |= {
                 name: at.value,
-                f"{name}_over_p_h": at.value / problem.p_h,
                 f"{name}_uncertainty": at.uncertainty,
                 f"{name}_x": at.x,
-                f"{name}_x_over_a_h": at.x / problem.a_h,
                 f"{name}_z": at.z,
-                f"{name}_z_over_a_h": at.z / problem.a_h,
             }
         rows.append(row)
     return rows

@@ -36,6 +36,8 @@ SOURCES = (*METHODS, *EXACT)
 # Each scalar of the contact with the scale of the bare substrate that it is given over.
 SCALARS = {name: ALL[name].scale for name in CONTACT_SCALARS}
 SCALES = dict.fromkeys(QUANTITIES, "p_h") | SCALARS
+# Each column that is given over a scale too.
+OVER = SCALES | {f"{name}_{axis}": "a_h" for name in QUANTITIES for axis in "xz"}
 
 _INPUT = (
     *("radius", "load", "coating_E", "coating_nu", "thickness", "residual_stress"),

@@ -16,7 +16,7 @@ from verification.study.study_table import SCALARS, SCALES, SOURCES
 
 
 @dataclass(frozen=True, eq=False)
-class Curve:
+class ThicknessCurve:
     """Quantities over ``h``, the thickness over a_h, in increasing order; p_h [Pa], a_h and delta_h [m].
 
     stress, uncertainty : each of QUANTITIES over p_h.
@@ -38,13 +38,18 @@ class Curve:
     failures: tuple[tuple[float, str], ...]
 
     @property
+    def value(self) -> dict[str, Array]:
+        """Every stress and scalar, over its scale."""
+        return {**self.stress, **self.scalar}
+
+    @property
     def label(self) -> str:
         """The curve in a legend."""
         return f"E1/E2 = {self.ratio:.4g}, f = {self.friction:g}"
 
 
 @dataclass(frozen=True)
-class Difference:
+class CrossCheck:
     """Largest difference of ``source`` from the semi-analytical method in ``quantity``.
 
     largest : |difference| over a_h, delta_h, of a pressure or stress over the smaller of p_h and p0.
@@ -61,13 +66,13 @@ class Difference:
     friction: float
 
 
-def curves(columns: Mapping[str, NDArray[Any]]) -> tuple[Curve, ...]:
+def curves(columns: Mapping[str, NDArray[Any]]) -> tuple[ThicknessCurve, ...]:
     """Every curve of a table, by modulus, then by friction."""
     keys = sorted(set(zip(columns["modulus_ratio"].tolist(), columns["friction"].tolist(), strict=True)))
     return tuple(_curve(columns, *key) for key in keys)
 
 
-def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
+def cross_checks(columns: Mapping[str, NDArray[Any]]) -> tuple[CrossCheck, ...]:
     """The largest difference of each other source by quantity; a source that solved nothing is absent."""
     point, solved, found = columns["point"], columns["status"] == "solved", []
     first, *others = (np.flatnonzero((columns["source"] == source) & solved) for source in SOURCES)
@@ -86,11 +91,11 @@ def differences(columns: Mapping[str, NDArray[Any]]) -> tuple[Difference, ...]:
             stated = float((uncertainty[here[i]] + uncertainty[beside[i]]) / over[i])
             place = (columns[name][here[i]] for name in ("modulus_ratio", "thickness_over_a_h", "friction"))
             ratio, h, friction = map(float, place)
-            found.append(Difference(source, quantity, here.size, largest, stated, ratio, h, friction))
+            found.append(CrossCheck(source, quantity, here.size, largest, stated, ratio, h, friction))
     return tuple(found)
 
 
-def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -> Curve:
+def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -> ThicknessCurve:
     mine = (columns["modulus_ratio"] == ratio) & (columns["friction"] == friction)
     solved = mine & (columns["status"] == "solved")
     lead = columns["source"] == SOURCES[0]
@@ -106,7 +111,7 @@ def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -
         if checked.size:
             h = columns["thickness_over_a_h"][checked]
             marks[source] = {q: (h, columns[f"{q}_over_{s}"][checked]) for q, s in SCALES.items()}
-    return Curve(
+    return ThicknessCurve(
         ratio,
         friction,
         p_h,

@@ -39,7 +39,7 @@ def table(name: str) -> dict[str, Array]:
 
 
 @dataclass(frozen=True)
-class Layer:
+class MeasuredLayer:
     """One layer of a stack; standard uncertainties of its inputs, relative but for nu, and their basis."""
 
     name: str
@@ -63,7 +63,7 @@ class MeasuredModulus:
     name: str
     title: str
     source: str
-    layers: tuple[Layer, ...]
+    layers: tuple[MeasuredLayer, ...]
     a: Array
     depth: Array
     D: Array
@@ -124,7 +124,7 @@ def _read(entry: dict[str, Any]) -> MeasuredModulus:
         name=entry["name"],
         title=entry["title"],
         source=entry["source"],
-        layers=tuple(Layer(**layer) for layer in entry["layers"]),
+        layers=tuple(MeasuredLayer(**layer) for layer in entry["layers"]),
         a=a,
         depth=hc,
         D=D,

@@ -175,20 +175,3 @@ def validated(measured: MeasuredModulus, elements: int = 0) -> Validated:
 
 def _floats(values: Array) -> tuple[float, ...]:
     return tuple(float(value) for value in values)
-
-
-def gao(a: Array, film: tuple[float, float, float], base: float) -> Array:
-    """Modulus [Pa] by Gao's weight: Gao, Chiu and Lee, Int. J. Solids Struct. 29 (1992) 2471."""
-    E, nu, thickness = film
-    x = thickness / a
-    weight = 2 / np.pi * np.arctan(x) + ((1 - 2 * nu) * x * np.log((1 + x**2) / x**2) - x / (1 + x**2)) / (
-        2 * np.pi * (1 - nu)
-    )
-    return base + (E / (1 - nu**2) - base) * weight
-
-
-def bec(a: Array, film: tuple[float, float, float], base: float) -> Array:
-    """Modulus [Pa] by two springs in series: Bec, Tonck, Georges et al., Phil. Mag. 86 (2006) 5347."""
-    E, nu, thickness = film
-    x = 2 * thickness / (np.pi * a)
-    return (1 + x) / (x * (1 - nu**2) / E + 1 / base)

@@ -18,9 +18,7 @@ from verification.validation.validation_metric import (
     RECORD,
     Validated,
     ValidationRecord,
-    bec,
     exact_modulus,
-    gao,
     substrate,
 )
 
@@ -169,8 +167,6 @@ def _drawn(one: Validated) -> Markup:
         axes = figure.subplots()
         axes.fill_between(a / t, exact * (1 - band), exact * (1 + band), color="#0072B2", alpha=0.25, lw=0)
         axes.plot(a / t, exact, color="#0072B2", label="layers, with u_input")
-        axes.plot(a / t, gao(a, data.coatings[0], base) / 1e9, color="#D55E00", ls="--", label="Gao's weight")
-        axes.plot(a / t, bec(a, data.coatings[0], base) / 1e9, color="#009E73", ls="-.", label="Bec et al.")
         for value, name in ((contact_modulus(*solid), "bare film"), (base, "bare substrate")):
             axes.axhline(value / 1e9, color="0.5", lw=0.8, ls=":")
             axes.annotate(name, (1, value / 1e9), ha="right", va="bottom", xycoords=("axes fraction", "data"))

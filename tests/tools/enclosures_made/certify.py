@@ -10,11 +10,16 @@ from rich.markup import escape
 
 from enclosures_made.enclosed_problems import problems, profile_radii
 from verification.commands.common.command_error import CommandError, no_result
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import RECORDS, require_checkout
 from verification.commands.common.shared_options import AsJson, Flag, Quiet, RecordsFolder
 from verification.commands.common.task_progress import run_info
-from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
+from verification.commands.common.terminal import (
+    did_you_mean,
+    named_table,
+    print_json,
+    print_out,
+    with_exit_code,
+)
 from verification.evidence.enclosure_record import (
     LOWER,
     SURFACE,

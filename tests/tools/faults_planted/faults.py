@@ -10,7 +10,6 @@ from cyclopts import Parameter
 from rich.markup import escape
 
 from verification.commands.common.command_error import CommandError, no_result
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.known_folders import RECORDS, require_checkout
 from verification.commands.common.shared_options import (
     AsJson,
@@ -22,7 +21,13 @@ from verification.commands.common.shared_options import (
     Resume,
 )
 from verification.commands.common.task_progress import kept_results, run_info, solve, worker_count
-from verification.commands.common.terminal import did_you_mean, named_table, print_json, print_out
+from verification.commands.common.terminal import (
+    did_you_mean,
+    named_table,
+    print_json,
+    print_out,
+    with_exit_code,
+)
 from verification.commands.common.terminal_bar import require_gmsh
 from verification.running.case_tasks import case_task
 from verification.running.checked_files import locked
@@ -63,7 +68,7 @@ def faults(
         record: Store the matrix of all faults as RECORDS/faults.json, for the credibility page of a report.
         time_limit: Seconds one fault may take before it is stopped and counted as not tried.
     """
-    jobs = worker_count(jobs, time_limit)
+    jobs = worker_count(jobs, time_limit=time_limit)
     from faults_planted.fault_catalogue import CONTROLS, FAULTS, chosen
     from verification.evidence.fault_record import GROUPS
 

@@ -94,7 +94,7 @@ def test_check_shows_the_differences_and_fails_beyond_both_uncertainties(tmp_pat
         found = desk.answer(problem, "hertz")
         off = 1.0 if source == "semianalytic" else factor
         numbers = {name: (off * value, 1e-6 * value) for name, (value, _) in found.numbers.items()}
-        return desk.Answer(source, 0.1, numbers, found.extremes, found.courses)
+        return desk.ContactAnswer(source, 0.1, numbers, found.extremes, found.courses)
 
     monkeypatch.setattr(command, "answer", made)
     for given, code in ((1 + 1e-6, 0), (1 + 1e-5, 1)):

@@ -1,7 +1,6 @@
 """The command line as people expect it: examples, exit codes, completion, plain pipes, a stop that keeps."""
 
 import io
-import json
 import re
 import shutil
 import signal
@@ -70,18 +69,6 @@ def test_completion_works_in_the_shell_itself(capsys, tmp_path, shell, words):
     assert "report" in done.stdout, done.stderr
     # Where no command fits, the names of files.
     assert "default" in done.stdout
-
-
-def test_names_are_whole_in_a_pipe(tmp_path):
-    names = [*shipped_cases(), *shaped_cases(), *published_cases()]
-    listed = coatcheck("list", cwd=tmp_path)
-    lines = listed.stdout.splitlines()
-    assert [line.split()[0] for line in lines if line.strip() and line.split()[0] in names] == names
-    # Two heads and a line between the tables: no row is folded.
-    assert len(lines) == len(names) + 3
-    assert "…" not in listed.stdout
-    found = json.loads(coatcheck("list", "--json", cwd=tmp_path).stdout)
-    assert [row["name"] for row in found] == names
 
 
 @pytest.fixture

@@ -60,17 +60,6 @@ def test_residual_stress_beyond_the_strength_needs_no_load():
     assert "residual stress alone" in coating.warnings("film")[0]
 
 
-def test_keys_of_a_file_name_layers():
-    keys = ("substrate", "coatings.1", "ball", "ball.coatings.0")
-    limits = {f"{key}.yield_strength": float(i) for i, key in enumerate(keys)}
-    assert yield_strengths(limits) == {
-        ("flat", "substrate"): 0.0,
-        ("flat", "coating 2"): 1.0,
-        ("ball", "substrate"): 2.0,
-        ("ball", "coating 1"): 3.0,
-    }
-
-
 def test_largest_strain_is_an_eigenvalue_of_hookes_law():
     E, nu = 3e9, 0.41
     xx, yy, zz, xz = s = np.random.default_rng(4).normal(size=(4, 300))

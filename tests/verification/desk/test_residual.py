@@ -51,13 +51,6 @@ def test_mismatch_of_expansion_is_that_of_a_thin_film():
     assert (sigma - nu * sigma) / E + 2e-6 * -300 == pytest.approx(12e-6 * -300, rel=1e-12, abs=0)
 
 
-def test_it_is_no_part_of_the_contact():
-    without = FILE.replace("expansion = 2e-6\n", "").replace('residual_stress = "150 MPa"\n', "")
-    without = without.replace(", expansion = 12e-6", "").replace("temperature_change = -300\n", "")
-    assert parse(without).residual == {}
-    assert parse(without).problem == parse(FILE).problem
-
-
 def test_tension_at_the_trailing_edge_is_the_sum(both):
     """p0 ((1 - 2 nu)/3 + f pi (4 + nu)/8) of Hamilton and Goodman plus the residual stress."""
     found = at(both[1], "sigma_xx", "surface")
@@ -124,9 +117,3 @@ def test_bad_files_end_in_one_message(old, new, message):
     with pytest.raises(CaseError) as error:
         parse(FILE.replace(old, new, 1))
     assert message in str(error.value)
-
-
-def test_slip_of_its_unit_is_warned_of():
-    (line,) = parse(FILE.replace('"150 MPa"', "-2.0")).warnings
-    assert "coating 2, residual_stress" in line
-    assert "GPa" in line

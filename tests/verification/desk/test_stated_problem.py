@@ -2,6 +2,7 @@
 
 import json
 import re
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -11,10 +12,9 @@ from quick_case import coatcheck
 
 import semianalytic
 from verification.cases.case_file import parse_case, read_case, shipped_cases
-from verification.cases.plausibility import refused
 from verification.cases.toml_file import CaseError
 from verification.desk.contact_answer import answer
-from verification.desk.stack_text import conditions, described, units_of
+from verification.desk.stack_text import described
 from verification.problem.coated_contact import CoatedContact
 from verification.sources.exact_sources import solve_exactly
 from verification.sources.source_registry import METHODS
@@ -23,16 +23,7 @@ SEED = 6101
 LENGTHS = {"nm": 1e-9, "um": 1e-6, "mm": 1e-3}
 STRESSES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6}
 FORCES = {"nN": 1e-9, "uN": 1e-6, "mN": 1e-3, "N": 1.0, "kN": 1e3}
-GEL = (
-    "--ball",
-    "5 um",
-    "--load",
-    "1 nN",
-    "--coating",
-    "gel 10 um, 10 kPa, 0.49",
-    "--substrate",
-    "70 GPa, 0.22",
-)
+GEL = "--ball '5 um' --load '1 nN' --coating 'gel 10 um, 10 kPa, 0.49' --substrate '70 GPa, 0.22'"
 
 
 def parsed(text):
@@ -115,42 +106,12 @@ def test_the_shape_of_an_indenter_is_stated_once():
         semianalytic.solve(radius=0.02, gap="sphere", **steel)
 
 
-def test_options_state_one_of_both(tmp_path):
-    words = ["solve", "--ball", "10 mm", "--substrate", "210 GPa, 0.3"]
-    for more in ([], ["--load", "1 N", "--approach", "1 um"]):
-        done = coatcheck(*words, *more, cwd=tmp_path)
-        assert done.returncode == 2
-        assert "load" in done.stderr
-        assert "approach" in done.stderr
-
-
 # The contact that was shown under 1000 N, an AFM tip, a small tip, a gel under a bead.
 SHOWN = [
-    (("--ball", "25 mm, 20 GPa, 0.3", "--approach", "4 mm", "--substrate", "20 GPa, 0.3"), "mm MPa kN"),
+    ("--ball '25 mm, 20 GPa, 0.3' --approach '4 mm' --substrate '20 GPa, 0.3'", "mm MPa kN"),
+    ("--ball '20 nm' --load '20 nN' --coating '2 nm, 70 GPa, 0.2' --substrate '160 GPa, 0.28'", "nm MPa nN"),
     (
-        (
-            "--ball",
-            "20 nm",
-            "--load",
-            "20 nN",
-            "--coating",
-            "2 nm, 70 GPa, 0.2",
-            "--substrate",
-            "160 GPa, 0.28",
-        ),
-        "nm MPa nN",
-    ),
-    (
-        (
-            "--ball",
-            "10 um",
-            "--load",
-            "5 mN",
-            "--coating",
-            "TiN 2 um, 450 GPa, 0.2",
-            "--substrate",
-            "210 GPa, 0.3",
-        ),
+        "--ball '10 um' --load '5 mN' --coating 'TiN 2 um, 450 GPa, 0.2' --substrate '210 GPa, 0.3'",
         "um MPa mN",
     ),
     (GEL, "um Pa nN"),
@@ -161,9 +122,9 @@ SHOWN = [
 def test_every_number_shown_is_in_the_units_of_the_contact(words, units, tmp_path):
     """The text, read back with its units, is the JSON, which is in SI; no other unit of a kind appears."""
     length, stress, force = units.split()
-    done = coatcheck("solve", *words, cwd=tmp_path)
+    done = coatcheck("solve", *shlex.split(words), cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    content = json.loads(coatcheck("solve", *words, "--json", cwd=tmp_path).stdout)
+    content = json.loads(coatcheck("solve", *shlex.split(words), "--json", cwd=tmp_path).stdout)
     assert content["units"] == {"length": "m", "stress": "Pa", "force": "N"}
     assert content["given"] == ({"approach": 0.004} if "--approach" in words else "load")
     text = done.stdout
@@ -198,7 +159,7 @@ def test_every_number_shown_is_in_the_units_of_the_contact(words, units, tmp_pat
 
 def test_a_soft_thick_film_is_measured_in_its_own_radius(tmp_path):
     """10 um of gel are 2700 radii of the contact on bare glass, 15 of its own; no --force is needed."""
-    done = coatcheck("solve", *GEL, "--json", cwd=tmp_path)
+    done = coatcheck("solve", *shlex.split(GEL), "--json", cwd=tmp_path)
     content = json.loads(done.stdout)
     problem = parsed(content["case_file"]).problem
     assert 1e-5 / problem.a_h > 2000
@@ -207,22 +168,6 @@ def test_a_soft_thick_film_is_measured_in_its_own_radius(tmp_path):
     for name, (value, U) in content["answer"]["numbers"].items():
         assert abs(value - getattr(exact, name)) <= U
     assert not [line for line in content["warnings"] if "radii" in line]
-
-
-@pytest.mark.parametrize(
-    ("radius", "E", "h", "told"),
-    [
-        ("5e-6", '"500 Pa"', "1e-5", False),
-        ("5e-6", "10e3", "1e-5", False),
-        ("5e-6", "210", "1e-5", True),  # GPa
-        ("5e-3", '"10 kPa"', "1e-5", True),
-        ("5e-5", '"10 kPa"', "3e-3", True),
-    ],
-)
-def test_soft_materials_are_usual_under_small_balls_alone(radius, E, h, told):
-    film = f"E = {E}; nu = 0.45; thickness = {h}"
-    load = 100 * float(radius) ** 2
-    assert bool(refused(parsed(case_text(film, radius=radius, load=load)).problem)) is told
 
 
 @pytest.mark.parametrize(("factor", "fits"), [(0.98, True), (1.02, False)])
@@ -238,9 +183,3 @@ def test_limits_of_thickness_hold_where_the_message_puts_them(factor, fits):
     else:
         with pytest.raises(CaseError):
             parsed(text)
-
-
-def test_conditions_under_a_figure_have_the_units_of_the_answer():
-    problem = parsed(case_text("E = 420e9; nu = 0.3; thickness = 7e-5")).problem
-    assert conditions(problem) == "R = 10 mm, W = 20 N, f = 0"
-    assert (units_of(problem).length, units_of(problem).stress) == ("um", "MPa")

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from synthetic_solves import STUDY
 
-from verification.cases.toml_file import CaseError
 from verification.problem.coated_contact import CoatedContact
 from verification.study.choice.critical_load import Critical, Ramp, critical, extended, ramps
 from verification.study.choice.failure_criteria import Criteria, Uniform
@@ -19,7 +18,6 @@ from verification.study.study_table import read_columns, write_table
 LOADS = STUDY.replace("load = 20.0", "").replace(
     "cross_check = 5", "cross_check = 0\nload = { from = 4, to = 30, count = 5 }"
 )
-BALL = "ball = { E = 210e9, nu = 0.3, coatings = [{ E = 1e11, nu = 0.3, thickness = 1e-6 }] }\n"
 EQUAL = """
 title = "Equal moduli"
 [problem]
@@ -190,18 +188,3 @@ def _closed(request, f):
         row |= {f"{name}_x": 0.0, f"{name}_z": 0.0}
     scales = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
     return row | {name: getattr(contact, scale) for name, scale in scales.items()}
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "message"),
-    [
-        ("count = 5", "count = 3", "sweep, load, count"),
-        ("from = 4", "from = 40", "sweep, load"),
-        ("from = 4", 'from = "4 Pa"', "'Pa'"),
-        ("coating = {", BALL + "coating = {", "coatings"),
-        ("2e-5", "2e-8", "value 1"),
-    ],
-)  # fmt: skip
-def test_bad_load_sweep_is_one_message(old, new, message):
-    with pytest.raises(CaseError, match=message):
-        parse_study(LOADS.replace(old, new, 1).encode(), Path("loads.toml"))

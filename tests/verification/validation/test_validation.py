@@ -6,17 +6,9 @@ import numpy as np
 import pytest
 
 import semianalytic
-from verification.sources.references.layered_half_space import contact_modulus
 from verification.validation import validation_page
 from verification.validation.measured_modulus import data_sets, described, exported, table
-from verification.validation.validation_metric import (
-    bec,
-    changed_stacks,
-    exact_modulus,
-    gao,
-    method_modulus,
-    substrate,
-)
+from verification.validation.validation_metric import changed_stacks, exact_modulus, method_modulus, substrate
 
 SILICA = next(one for one in data_sets() if one.name == "silica_on_silicon")
 
@@ -34,12 +26,6 @@ def test_exported_modulus_of_the_bare_wafer_is_the_stated_one():
     rows = (bare["hc"] > area["hc"][1]) & (bare["hc"] < 500e-9)
     D = exported(bare["S"][rows], np.interp(bare["hc"][rows], area["hc"], area["a"]))
     assert abs(D.mean() - described()["substrate"]["modulus"]) < described()["substrate"]["u"]
-
-
-def test_depth_of_contact_follows_from_the_formula_of_the_instrument():
-    rows = table("silica_on_silicon.csv")
-    expected = rows["h"] - described()["instrument"]["epsilon"] * rows["P"] / rows["S"]
-    np.testing.assert_allclose(rows["hc"], expected, rtol=1e-3)
 
 
 def test_uncertainties_add_up_as_the_standard_says_and_the_interval_is_two_of_them(record):
@@ -67,14 +53,6 @@ def test_stored_numbers_are_those_of_the_method_and_of_the_exact_solution(record
     # both methods give the same modulus: no difference from the data is numerical
     assert all(abs(value / one.S[k] - 1) < 2e-5 for k, value in one.elements)
     assert len(one.elements) == 3
-
-
-def test_formulas_for_comparison_have_both_bare_limits():
-    film, base = SILICA.coatings[0], contact_modulus((), substrate())
-    for formula in (gao, bec):
-        small, large = formula(np.array([1e-4, 1e4]) * film[2], film, base)
-        assert small == pytest.approx(film[0] / (1 - film[1] ** 2), rel=1e-3)
-        assert large == pytest.approx(base, rel=1e-3)
 
 
 def test_page_shows_the_numbers_of_the_record_and_every_reason(record):

@@ -27,11 +27,12 @@ from verification.running.provenance import commit, cores, hardware, versions
 T = TypeVar("T")
 
 
-def worker_count(jobs: int | None, time_limit: float) -> int:
-    """Processes side by side. Raises CommandError where one of both is not positive."""
+def worker_count(jobs: int | None, **most: float | None) -> int:
+    """Processes side by side. Raises CommandError where it is not positive, or one of ``most`` is not."""
     jobs = cores() if jobs is None else jobs
-    if jobs < 1 or not time_limit > 0:
-        raise CommandError(f"--jobs = {jobs}, --time-limit = {time_limit:g}; both must be positive")
+    given = {"jobs": jobs} | {name: value for name, value in most.items() if value is not None}
+    if wrong := [f"--{name.replace('_', '-')} = {value:g}" for name, value in given.items() if not value > 0]:
+        raise CommandError(f"{', '.join(wrong)}; it must be positive")
     return jobs
 
 

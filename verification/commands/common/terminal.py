@@ -6,18 +6,20 @@ The command line imports this for each command, so numpy and rich are imported w
 import json
 import os
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ParamSpec
 
-from verification.commands.common.command_error import CommandError
+from verification.commands.common.command_error import BAD_INPUT, CommandError
 from verification.judging.outcome import Outcome
 
 if TYPE_CHECKING:
     from rich.table import Table
 
+P = ParamSpec("P")
 UNBROKEN = 100_000  # columns of a file or pipe
 STYLE = {
     Outcome.AGREES: "green",
@@ -26,6 +28,23 @@ STYLE = {
     Outcome.INCONCLUSIVE: "yellow",
     Outcome.UNSUPPORTED: "dim",
 }
+
+
+def with_exit_code(command: Callable[P, int]) -> Callable[P, int]:
+    """``command``, whose errors of input, of files and of the system become one message and an exit code."""
+
+    @wraps(command)
+    def wrapped(*args: P.args, **options: P.kwargs) -> int:
+        from verification.cases.toml_file import CaseError
+        from verification.running.checked_files import StoreError
+
+        try:
+            return command(*args, **options)
+        except (CommandError, CaseError, StoreError, OSError) as error:
+            print_error(str(error))
+            return error.code if isinstance(error, CommandError) else BAD_INPUT
+
+    return wrapped
 
 
 def print_error(message: str) -> None:

@@ -3,9 +3,8 @@
 from pathlib import Path
 
 from verification.commands.common.command_error import CommandError
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.shared_options import AsJson, Output, Quiet
-from verification.commands.common.terminal import print_files
+from verification.commands.common.terminal import print_files, with_exit_code
 
 
 @with_exit_code

@@ -4,9 +4,8 @@ from pathlib import Path
 
 from rich.markup import escape
 
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.shared_options import AsJson, Output
-from verification.commands.common.terminal import print_json, print_out
+from verification.commands.common.terminal import print_json, print_out, with_exit_code
 from verification.running.checked_files import write_atomically
 
 

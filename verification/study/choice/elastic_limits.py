@@ -32,7 +32,7 @@ def beyond_elastic(study: Study, columns: Mapping[str, NDArray[Any]]) -> tuple[s
                 f"peak pressure up to {as_stress(p0.max())} is beyond {key} = {as_stress(value)}: not elastic"
             )
             found.append(f"{what}, {_where(study, rows, beyond)}")
-    layers = ["substrate"] if study.above or study.below else ["substrate", "coating"]
+    layers = ["substrate"] if study.held else ["substrate", "coating"]
     for layer in layers:
         E, nu = rows[f"{layer}_E"].astype(float), rows[f"{layer}_nu"].astype(float)
         strain = (1 + nu) * rows[f"von_mises_{layer}"].astype(float) / E

@@ -20,7 +20,6 @@ from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
-from scipy.interpolate import PchipInterpolator
 from scipy.special import ndtri
 
 from verification.cases.plausibility import Limits
@@ -28,7 +27,6 @@ from verification.cases.toml_file import Strict
 from verification.cases.unit_numbers import InSI, Pascals
 from verification.problem.array_types import Array
 from verification.study.largest_stresses import Stress
-from verification.study.thickness_curves import Curve
 
 
 class Uniform(Strict):
@@ -108,7 +106,6 @@ MODES = {
     "von_mises_coating": "the coating yields",
     "von_mises_substrate": "the substrate yields",
 }
-SAMPLES = 4001  # of an interpolated curve
 
 
 class Criteria(Strict):
@@ -169,6 +166,11 @@ class Criteria(Strict):
         return tuple(found)
 
     @property
+    def limited(self) -> bool:
+        """Whether strengths are given."""
+        return self.strength is not None
+
+    @property
     def scatters(self) -> bool:
         """Whether any strength is more than one value."""
         return any(one.scatters for one in self.given().values())
@@ -196,78 +198,3 @@ class Criteria(Strict):
         factor = f", each stress times {self.safety:g}" if self.safety != 1 else ""
         kind = f"the {100 * self.fractile:g} % fractile of its strength" if self.scatters else "its strength"
         return f"Every stress must stay below {kind}{factor}."
-
-
-@dataclass(frozen=True, eq=False)
-class Judged:
-    """A criterion evaluated on one curve; thicknesses over a_h.
-
-    modes : of the criterion.   utilisation : (modes, points of the curve).   limited : strengths were given.
-    admissible : ranges of h.
-    interpolation_error : largest change of a utilisation at points left out one by one, over the largest
-    utilisation.
-    """
-
-    curve: Curve
-    modes: tuple[str, ...]
-    utilisation: Array
-    limited: bool
-    admissible: tuple[tuple[float, float], ...]
-    interpolation_error: float
-
-
-def judged(curve: Curve, criteria: Criteria) -> Judged:
-    """Evaluate ``criteria`` on ``curve``, interpolated by monotone cubics in log h.
-
-    Raises ValueError for a curve of fewer than two points.
-    """
-    if curve.h.size < 2:
-        raise ValueError(f"{curve.h.size} thickness solved; a criterion needs two, sweep more")
-    strengths = criteria.strengths(curve.p_h)
-    scale = criteria.safety * curve.p_h / np.array([*strengths.values()])[:, None]
-    stress = np.array([curve.stress[mode] for mode in strengths])
-    used = scale * stress
-    bound = scale * (stress + np.nan_to_num([curve.uncertainty[mode] for mode in strengths]))
-    s = np.log(curve.h)
-    h = np.geomspace(curve.h[0], curve.h[-1], SAMPLES)
-    return Judged(
-        curve,
-        tuple(strengths),
-        used,
-        criteria.strength is not None,
-        _ranges(h, PchipInterpolator(s, bound, axis=1)(np.log(h)).max(axis=0)),
-        _interpolation_error(s, used),
-    )
-
-
-def _ranges(h: Array, largest: Array) -> tuple[tuple[float, float], ...]:
-    """Ranges where ``largest`` is at most 1, their ends by linear interpolation between samples."""
-    inside = largest <= 1
-    ranges = []
-    starts = np.flatnonzero(inside & ~np.append(False, inside[:-1]))
-    ends = np.flatnonzero(inside & ~np.append(inside[1:], False))
-
-    def crossing(k: int) -> float:
-        """Thickness between samples k and k + 1 where the utilisation is 1."""
-        return h[k] + (h[k + 1] - h[k]) * (1 - largest[k]) / (largest[k + 1] - largest[k])
-
-    for i, j in zip(starts.tolist(), ends.tolist(), strict=True):
-        low = h[i] if i == 0 else crossing(i - 1)
-        high = h[j] if j == h.size - 1 else crossing(j)
-        ranges.append((float(low), float(high)))
-    return tuple(ranges)
-
-
-def _interpolation_error(s: Array, used: Array) -> float:
-    """Largest error of interpolating an inner point from the others, over the largest utilisation.
-
-    A point left out doubles the interval, so this exceeds the error of the whole curve.
-    """
-    if s.size < 4:
-        return float("nan")
-    worst = 0.0
-    for i in range(1, s.size - 1):
-        others = np.arange(s.size) != i
-        interpolated = PchipInterpolator(s[others], used[:, others], axis=1)(s[i])
-        worst = max(worst, float(np.abs(interpolated - used[:, i]).max()))
-    return worst / float(np.abs(used).max() or 1.0)

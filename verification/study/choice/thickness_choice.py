@@ -13,8 +13,10 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from verification.problem.array_types import Array
-from verification.study.choice.failure_criteria import SAMPLES, Criteria, Judged, Strength
+from verification.study.choice.failure_criteria import Criteria, Strength
+from verification.study.thickness_curves import ThicknessCurve
 
+SAMPLES = 4001  # of an interpolated curve
 EVEN = 0.01  # of the smallest utilisation, unless the curves are less certain
 HALVED = 4  # at least by as much the error of interpolation falls with half the distance of points
 DRAWN, SEED = 20_000, 16  # samples of the strengths; the same each time
@@ -51,21 +53,23 @@ class Chances:
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """What the curves of one modulus recommend; thicknesses over a_h.
+    """What the curves of one modulus recommend, one for each friction; thicknesses over a_h.
 
-    h, use : dense samples, (frictions, modes, samples) of utilisations.   error : of a utilisation.
-    tolerance : above the smallest utilisation ``least``, over it, within which thicknesses are equally good.
+    modes : of the criterion.   h, use : dense samples, (frictions, modes, samples) of utilisations.
+    error : of a utilisation, by interpolation.   tolerance : above the smallest one, ``least``, over it,
+    within which thicknesses are equally good.
     even : the range of these.   ranges : admissible ones, none without strengths.
     """
 
-    judgements: tuple[Judged, ...]
+    curves: tuple[ThicknessCurve, ...]
     criteria: Criteria
+    modes: tuple[str, ...]
     h: Array
     use: Array
     error: float
-    tolerance: float
-    even: Range
-    ranges: tuple[Range, ...]
+    tolerance: float = 0.0
+    even: Range = (None, None)
+    ranges: tuple[Range, ...] = ()
 
     @cached_property
     def largest(self) -> Array:
@@ -82,16 +86,16 @@ class Choice:
         """Thickness of ``least``."""
         return float(self.h[self.largest.argmin()])
 
-    def governing(self, h: float) -> tuple[Judged, str]:
-        """The curve of the friction, and the mode, with the largest utilisation at ``h``."""
+    def governing(self, h: float) -> tuple[str, float]:
+        """The mode with the largest utilisation at ``h``, and the friction at which it is."""
         at = int(np.abs(np.log(self.h / h)).argmin())
         friction, mode = np.unravel_index(int(self.use[:, :, at].argmax()), self.use.shape[:2])
-        return self.judgements[friction], self.judgements[0].modes[mode]
+        return self.modes[mode], self.curves[friction].friction
 
     def chances(self, h: Array) -> Chances:
         """Probabilities at thicknesses ``h``; without strengths a mode governs or it does not."""
-        p_h = self.judgements[0].curve.p_h
-        stress = self.use.max(axis=0) * np.array([*self.criteria.strengths(p_h).values()])[:, None]
+        counted = [*self.criteria.strengths(self.curves[0].p_h).values()]
+        stress = self.use.max(axis=0) * np.array(counted)[:, None]
         here = np.array([np.interp(np.log(h), np.log(self.h), one) for one in stress])
         return sampled(here, self.criteria.given())
 
@@ -117,47 +121,73 @@ def strengths_drawn(strengths: Mapping[str, Strength]) -> Array:
     return np.stack([s.quantile(shares[:, i]) for i, s in enumerate(strengths.values())], axis=1)
 
 
-def choice(judgements: Sequence[Judged], criteria: Criteria) -> Choice:
-    """The choice from the curves of one modulus, one for each friction."""
-    members = tuple(sorted(judgements, key=lambda j: j.curve.friction))
-    low, high = max(j.curve.h[0] for j in members), min(j.curve.h[-1] for j in members)
-    h = np.geomspace(low, high, SAMPLES)
-    use = np.stack([PchipInterpolator(np.log(j.curve.h), j.utilisation, axis=1)(np.log(h)) for j in members])
-    # NaN of curves with too few points to estimate it
-    errors = [j.interpolation_error * float(np.abs(j.utilisation).max()) / HALVED for j in members]
-    error = float(np.nanmax([*errors, 0.0]))
-    largest = use.max(axis=(0, 1))
-    least = float(largest.min()) or 1.0
-    tolerance = max(EVEN, error / least)
-    found = Choice(members, criteria, h, use, error, tolerance, (None, None), ())
+def choice(curves: Sequence[ThicknessCurve], criteria: Criteria) -> Choice:
+    """The choice from the ``curves`` of one modulus, each interpolated by monotone cubics in log h.
+
+    Raises ValueError for a curve of fewer than two points.
+    """
+    members = tuple(sorted(curves, key=lambda one: one.friction))
+    if (fewest := min(one.h.size for one in members)) < 2:
+        raise ValueError(f"{fewest} thickness solved; a criterion needs two, sweep more")
+    strengths = criteria.strengths(members[0].p_h)
+    scale = criteria.safety * members[0].p_h / np.array([*strengths.values()])[:, None]
+    h = np.geomspace(max(one.h[0] for one in members), min(one.h[-1] for one in members), SAMPLES)
+    use, bound, errors = [], [], [0.0]
+    for one in members:
+        s, stress = np.log(one.h), np.array([one.stress[mode] for mode in strengths])
+        U = np.nan_to_num([one.uncertainty[mode] for mode in strengths])
+        use.append(PchipInterpolator(s, scale * stress, axis=1)(np.log(h)))
+        bound.append(PchipInterpolator(s, scale * (stress + U), axis=1)(np.log(h)))
+        errors.append(interpolation_error(s, scale * stress) / HALVED)
+    found = Choice(members, criteria, tuple(strengths), h, np.stack(use), float(np.nanmax(errors)))
+    largest, least = found.largest, found.least or 1.0
+    found = replace(found, tolerance=max(EVEN, found.error / least))
     best = int(largest.argmin())
-    beyond = largest > least * (1 + tolerance)
+    beyond = largest > least * (1 + found.tolerance)
     below, above = np.flatnonzero(beyond[:best]), best + np.flatnonzero(beyond[best:])
     even = (
         _end(found, int(below[-1])) if below.size else None,
         _end(found, int(above[0])) if above.size else None,
     )
-    ranges = members[0].admissible if members[0].limited else ()
-    for j in members[1:]:
-        ranges = _overlap(ranges, j.admissible)
+    admissible = _admissible(found, np.stack(bound).max(axis=(0, 1))) if criteria.limited else ()
+    return replace(found, even=even, ranges=admissible)
 
-    def end(at: float) -> End | None:
-        return None if at in (h[0], h[-1]) else _end(found, int(np.abs(h - at).argmin()), at)
 
-    return replace(found, even=even, ranges=tuple((end(low), end(high)) for low, high in ranges))
+def interpolation_error(s: Array, values: Array) -> float:
+    """Largest error of interpolating an inner point of ``values`` over ``s`` from the others; NaN of too few.
+
+    A point left out doubles the interval, so this exceeds the error of the whole curve.
+    """
+    worst = 0.0 if s.size >= 4 else float("nan")
+    for i in range(1, s.size - 1):
+        others = np.arange(s.size) != i
+        interpolated = PchipInterpolator(s[others], values[..., others], axis=-1)(s[i])
+        worst = max(worst, float(np.abs(interpolated - values[..., i]).max())) if worst == worst else worst
+    return worst
+
+
+def _admissible(found: Choice, largest: Array) -> tuple[Range, ...]:
+    """Ranges where ``largest`` is at most 1, their ends by linear interpolation between samples."""
+    inside, h = largest <= 1, found.h
+    starts = np.flatnonzero(inside & ~np.append(False, inside[:-1]))
+    ends = np.flatnonzero(inside & ~np.append(inside[1:], False))
+
+    def crossing(k: int) -> End:
+        """The end between samples k and k + 1, where the utilisation is 1."""
+        at = float(h[k] + (h[k + 1] - h[k]) * (1 - largest[k]) / (largest[k + 1] - largest[k]))
+        return _end(found, int(np.abs(h - at).argmin()), at)
+
+    return tuple(
+        (crossing(i - 1) if i else None, crossing(j) if j < h.size - 1 else None)
+        for i, j in zip(starts.tolist(), ends.tolist(), strict=True)
+    )
 
 
 def _end(found: Choice, k: int, h: float | None = None) -> End:
     """The end at sample ``k``, or at ``h`` beside it; uncertain by the error over its slope."""
-    judgement, mode = found.governing(float(found.h[k]))
-    slope = abs(np.gradient(found.largest[max(k - 1, 0) : k + 2], found.h[max(k - 1, 0) : k + 2]))[-2:].max()
+    near = slice(max(k - 1, 0), k + 2)
+    slope = abs(np.gradient(found.largest[near], found.h[near]))[-2:].max()
     step = float(np.diff(found.h[max(k - 1, 0) : k + 1]).max(initial=0.0))
     at = float(found.h[k]) if h is None else h
-    return End(at, min(max(found.error / slope if slope else at, step), at), mode, judgement.curve.friction)
-
-
-def _overlap(
-    a: Sequence[tuple[float, float]], b: Sequence[tuple[float, float]]
-) -> tuple[tuple[float, float], ...]:
-    both = [(max(p, r), min(q, s)) for p, q in a for r, s in b]
-    return tuple((low, high) for low, high in both if low < high)
+    U = min(max(found.error / slope if slope else at, step), at)
+    return End(at, U, *found.governing(float(found.h[k])))

@@ -7,17 +7,18 @@ import numpy as np
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
 from verification.page.page_parts import Cell, Part, Section, number, table_of
-from verification.study.choice.critical_load import Critical, critical, ramps
-from verification.study.choice.elastic_limits import beyond_elastic
+from verification.problem.array_types import Array
+from verification.study.choice.critical_load import BAND, Critical, critical, ramps
 from verification.study.choice.failure_criteria import MODES
-from verification.study.pages.study_assembly import Draw, Written, common_sections, write_page
+from verification.study.pages.study_assembly import Draw, Written, write_page
 from verification.study.pages.study_figures import (
-    COLOURS,
+    COLOUR_OF,
     DASHES,
     Drawn,
     below,
+    draw_shares,
+    draw_use,
     drawn,
-    pale,
     sheet,
     thickness_axes,
 )
@@ -54,11 +55,8 @@ def write_load_report(
     failed = np.flatnonzero(columns["status"] != "solved")
     failures = sorted({f"h = {columns['thickness'][i]:.4g} m: {columns['failure'][i]}" for i in failed})
     first = Section("critical", "Critical loads", [Part(text) for text in said] + [_table(study, found)])
-    sections = [first, *common_sections(study, folder, draws, columns, failures, drawing)]
     summary = said[0] if said else f"No answer: no ramp of {study.title} has four solved loads."
-    return write_page(
-        table, study, folder, said, summary, sections, [], facts, beyond_elastic(study, columns)
-    )
+    return write_page(table, study, folder, columns, said, summary, first, draws, failures, facts, drawing)
 
 
 def answers(study: Study, found: Sequence[Critical]) -> list[str]:
@@ -119,11 +117,14 @@ def _table(study: Study, found: Sequence[Critical]) -> Part:
 
         return cell
 
-    def p0(item: tuple[Critical, str]) -> float | None:
+    def reached(item: tuple[Critical, str]) -> float | None:
+        """The median critical load of an item; None where it is not reached within the ramp."""
         middle = item[0].of[item[1]][1]
-        ramp = item[0].ramp
-        pressure = np.interp(np.log(max(middle, ramp.load[0])), np.log(ramp.load), ramp.p0) / units.pascal
-        return float(pressure) if 0 < middle < np.inf else None
+        return middle if 0 < middle < np.inf else None
+
+    def p0(item: tuple[Critical, str]) -> float | None:
+        middle, ramp = reached(item), item[0].ramp
+        return middle and float(np.interp(np.log(middle), np.log(ramp.load), ramp.p0)) / units.pascal
 
     table = table_of(
         "Critical load [N] of each failure mode whose strength some sample reaches within the ramp: its 5 %, "
@@ -141,7 +142,7 @@ def _table(study: Study, found: Sequence[Critical]) -> Part:
             ("5 %", load(0)),
             ("50 %", load(1)),
             ("95 %", load(2)),
-            ("±", lambda item: item[0].uncertainty[item[1]] if 0 < item[0].of[item[1]][1] < np.inf else None),
+            ("±", lambda item: reached(item) and item[0].uncertainty[item[1]]),
             (f"p0 [{units.stress}]", lambda item: number(p0(item), "{:.3g}".format)),
             ("first", lambda item: number(item[0].share[item[1]], "{:.0%}".format)),
         ],
@@ -160,42 +161,40 @@ def _groups(found: Sequence[Critical]) -> dict[tuple[float, float], list[Critica
 def _maps(study: Study, found: Sequence[Critical]) -> list[Drawn]:
     """Critical load of each mode over the thickness, with the band of 90 % of the strengths."""
     drawings, units = [], study.units
-    a_h = study.bare.a_h / units.metre
-    for (ratio, friction), members in _groups(found).items():
+    groups: dict[tuple[float, float], list[Critical]] = {}
+    for one in sorted(found, key=lambda one: one.ramp.thickness):
+        groups.setdefault((one.ramp.ratio, one.ramp.friction), []).append(one)
+    for (ratio, friction), members in groups.items():
         if len(members) < 2:
             continue
         modes = [mode for mode in members[0].of if any(np.isfinite(one.of[mode][0]) for one in members)]
         h = np.array([one.ramp.thickness / units.metre for one in members])
-        rows = [["E1/E2", "f", f"h [{units.length}]", "mode", "5 % [N]", "50 % [N]", "95 % [N]"]]
         low, high = members[0].load[0], members[0].load[-1]
+        bands = {mode: np.array([one.of[mode] for one in members]) for mode in modes}
+        heads = [f"{mode}, {share:.0%} [N]" for mode in modes for share in BAND]
+        rows = [[f"h [{units.length}]", *heads], *np.column_stack([h, *bands.values()])]
+
+        def shown(load: Array, low: float = low, high: float = high) -> Array:
+            return np.where(np.isfinite(load), np.maximum(load, low / 10), 10 * high)
+
         with sheet(80, (len(modes) + 2) // 2, right=4) as figure:
             axes = figure.subplots(1, 1)
-            for mode in modes:
-                colour = COLOURS[list(MODES).index(mode)]
-                band = np.array([one.of[mode] for one in members])
-                rows += [
-                    [f"{ratio:g}", f"{friction:g}", f"{x:.6g}", mode, *(f"{v:.6g}" for v in values)]
-                    for x, values in zip(h, band, strict=True)
-                ]
-                shown = np.where(np.isfinite(band), np.maximum(band, low / 10), 10 * high)
-                axes.fill_between(h, shown[:, 0], shown[:, 2], color=colour, linewidth=0, alpha=0.27)
-                axes.plot(h, shown[:, 1], color=colour, label=mode, marker=".", markersize=3)
-            first = np.array([one.first[1] for one in members])
-            first = np.where(np.isfinite(first), np.maximum(first, low / 10), 10 * high)
-            axes.plot(h, first, color="black", linewidth=0.9,
-                      linestyle=DASHES[1], label="first of all")  # fmt: skip
+            for mode, band in bands.items():
+                least, middle, most = shown(band).T
+                axes.fill_between(h, least, most, color=COLOUR_OF[mode], linewidth=0, alpha=0.27)
+                axes.plot(h, middle, color=COLOUR_OF[mode], label=mode, marker=".", markersize=3)
+            first = shown(np.array([one.first[1] for one in members]))
+            axes.plot(h, first, color="black", linewidth=0.9, linestyle=DASHES[1], label="first of all")
             axes.set_yscale("log")
             axes.set_ylim(0.9 * low, 1.1 * high)
             axes.yaxis.set_major_formatter(lambda y, _: f"{y:g}")
             axes.set_ylabel("critical load [N]")
-            axes.grid(True, which="both", linewidth=0.3, color="#cccccc")
-            thickness_axes([axes], a_h, units)
+            axes.grid(visible=True, which="both")
+            thickness_axes([axes], study.bare.a_h / units.metre, units)
             below(figure, axes.get_legend_handles_labels()[0], 2)
-            name = f"critical_{ratio:.4g}_f{friction:g}".replace(".", "_")
             title = f"Critical load, E1/E2 = {ratio:.4g}, f = {friction:g}"
-            load = f"{study.load:g} N"
-            caption = f"Bands: 90 % of the strengths. h/a_h at {load}."
-            drawings.append(drawn(figure, name, title, caption, rows))
+            caption = f"Bands: 90 % of the strengths. h/a_h at {study.load:g} N."
+            drawings.append(drawn(figure, f"critical_{ratio:.4g}_f{friction:g}", title, caption, rows))
     return drawings
 
 
@@ -208,32 +207,19 @@ def _tracks(study: Study, found: Sequence[Critical]) -> list[Drawn]:
     strengths = study.criteria.given()
     for one in _weakest(found):
         ramp = one.ramp
-        modes = list(strengths)
-        colours = {mode: COLOURS[list(MODES).index(mode)] for mode in modes}
-        rows = [
-            ["load [N]", *(f"{mode} over strength" for mode in modes), *(f"{m} failed first" for m in modes)]
-        ]
-        some = np.linspace(0, one.load.size - 1, 81).astype(int)
         use = {
-            mode: study.criteria.safety * ramp.at(one.load, mode) / float(strengths[mode].quantile(0.5))
-            for mode in modes
+            mode: study.criteria.safety * ramp.at(one.load, mode) / float(strength.quantile(0.5))
+            for mode, strength in strengths.items()
         }
-        with sheet(104, (len(modes) + 1) // 2, right=4) as figure:
+        with sheet(104, (len(use) + 1) // 2, right=4) as figure:
             upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-            for mode in modes:
-                upper.plot(one.load, use[mode], color=colours[mode], label=mode)
-                Lc = one.of[mode][1]
-                if one.load[0] < Lc <= one.load[-1]:
-                    upper.plot([Lc], [1.0], "v", color=colours[mode], markersize=5)
-            upper.axhline(1.0, color="#c02a2a", linewidth=0.9, linestyle=(0, (4, 2)))
-            upper.set_ylabel("stress over strength")
+            draw_use(upper, one.load, use)
+            for mode, colour in ((mode, COLOUR_OF[mode]) for mode in use):
+                if one.load[0] < one.of[mode][1] <= one.load[-1]:
+                    upper.plot([one.of[mode][1]], [1.0], "v", color=colour, markersize=5)
             upper.set_ylim(0, max(1.4, min(2.5, max(float(u.max()) for u in use.values()))))
-            upper.grid(True, linewidth=0.3, color="#cccccc")
             # below the ramp, in grey, several modes without a first
-            tied = np.full(one.load.shape, one.unresolved)
-            shades = ["#bbbbbb", *(pale(c) for c in colours.values())]
-            lower.stackplot(one.load, tied, *one.fails.values(), colors=shades, linewidth=0)
-            lower.set_ylim(0, 1)
+            draw_shares(lower, one.load, one.fails, rest=one.unresolved)
             lower.set_ylabel("probability\nof failure")
             lower.set_xlabel("load [N]")
             lower.set_xlim(one.load[0], one.load[-1])
@@ -247,32 +233,28 @@ def _tracks(study: Study, found: Sequence[Critical]) -> list[Drawn]:
                     axis.set_minor_formatter(NullFormatter())
             top.set_xlabel(f"peak pressure $p_0$ [{units.stress}]")
             below(figure, upper.get_legend_handles_labels()[0], 2)
-            rows += [
-                [
-                    f"{one.load[i]:.6g}",
-                    *(f"{use[m][i]:.6g}" for m in modes),
-                    *(f"{one.fails[m][i]:.4f}" for m in modes),
-                ]
-                for i in some
-            ]
+            heads = ["load [N]", *(f"{mode} over strength" for mode in use)]
+            heads += [f"{mode} failed first" for mode in use]
+            some = np.linspace(0, one.load.size - 1, 81).astype(int)
+            rows = [heads, *np.column_stack([one.load, *use.values(), *one.fails.values()])[some]]
             h = units.shown_length(ramp.thickness)
-            name = f"ramp_{ramp.ratio:.4g}_{ramp.thickness / units.metre:.4g}".replace(".", "_")
             title = f"Load ramp, E1/E2 = {ramp.ratio:.4g}, {h}, f = {ramp.friction:g}"
             caption = (
                 "Triangles: critical loads at median strength. Below: probability of failure, by first mode."
             )
+            name = f"ramp_{ramp.ratio:.4g}_{ramp.thickness / units.metre:.4g}"
             drawings.append(drawn(figure, name, title, caption, rows))
     return drawings
 
 
-def _pressure(load: np.ndarray, p0: np.ndarray) -> tuple[Callable, Callable]:
+def _pressure(load: Array, p0: Array) -> tuple[Callable[[Array], Array], Callable[[Array], Array]]:
     """From a load to its peak pressure and back, both by power laws between the points and beyond."""
     slope = np.log(p0[-1] / p0[0]) / np.log(load[-1] / load[0])
     x, y = np.log(load), np.log(p0)
 
-    def through(a: np.ndarray, b: np.ndarray, rise: float, value: np.ndarray) -> np.ndarray:
+    def through(a: Array, b: Array, rise: float, value: Array) -> Array:
         at = np.log(np.maximum(value, 1e-9))
-        inner = np.interp(at, a, b)
-        return np.exp(inner + rise * (np.minimum(at - a[0], 0) + np.maximum(at - a[-1], 0)))
+        beyond = np.minimum(at - a[0], 0) + np.maximum(at - a[-1], 0)
+        return np.exp(np.interp(at, a, b) + rise * beyond)
 
     return (lambda v: through(x, y, slope, v)), (lambda v: through(y, x, 1 / slope, v))

@@ -26,10 +26,11 @@ from verification.page.page_parts import (
 from verification.page.source_labels import source_label
 from verification.problem.array_types import Coatings
 from verification.running.checked_files import write_atomically
+from verification.study.choice.elastic_limits import beyond_elastic
 from verification.study.choice.failure_criteria import MODES
 from verification.study.pages.study_figures import Drawn, write_drawn
 from verification.study.study_plan import Study
-from verification.study.thickness_curves import Difference, differences
+from verification.study.thickness_curves import CrossCheck, cross_checks
 
 Draw = tuple[str, str, Callable[[], list[Drawn]]]  # anchor, title, function that draws the figures
 
@@ -50,51 +51,38 @@ def write_page(
     table: Path,
     study: Study,
     folder: Path,
+    columns: Mapping[str, NDArray[Any]],
     answer: Sequence[str],
     summary: str,
-    sections: Sequence[Section],
-    counts: Sequence[tuple[str, str]],
-    facts: Sequence[tuple[str, str]],
-    warnings: tuple[str, ...] = (),
-) -> Written:
-    """NAME.html under ``folder`` on the ``table`` of ``study``.
-
-    summary : the line on top.   counts, facts : (name, value) pairs, before and after its warnings.
-    warnings : of its solved points.
-    Raises StoreError where it cannot be written.
-    """
-    page = folder / f"{study.name}.html"
-    told = [("implausible", text) for text in study.warnings] + [("beyond", text) for text in warnings]
-    head = [("study", study.title), ("source", study.source), *counts, *told, *facts]
-    footer = f"Written by coatcheck from {table.name} beside this file."
-    write_atomically(page, render_sections("coatcheck study", summary, head, sections, footer))
-    return Written(page, tuple(answer), warnings)
-
-
-def common_sections(
-    study: Study,
-    folder: Path,
+    first: Section,
     draws: Iterable[Draw],
-    columns: Mapping[str, NDArray[Any]],
     failures: Sequence[str],
+    facts: Sequence[tuple[str, str]],
     drawing: Callable[[str], None],
-) -> list[Section]:
-    """The inputs; the figures, written under ``folder`` too; the cross-checks; what could not be solved.
+) -> Written:
+    """NAME.html under ``folder`` on the ``table`` of ``study``: its answer in the ``first`` section, then the
+    inputs; the figures, written under ``folder`` too; the cross-checks; what could not be solved.
 
+    columns : of the table.   summary : the line on top.   facts : (name, value) pairs of its head.
     drawing : called with the title of each group of figures before it is drawn. A group that fails may add
-    to ``failures``.   Raises StoreError.
+    to ``failures``.   Raises StoreError where it cannot be written.
     """
-    sections = [_inputs_section(study)]
+    page, warnings = folder / f"{study.name}.html", beyond_elastic(study, columns)
+    sections = [first, _inputs_section(study)]
     for anchor, title, draw in draws:
         drawing(title)
         if found := draw():
             sections.append(_drawn_section(anchor, title, found))
         for one in found:
             write_drawn(one, folder / "figures" / study.name)
-    sections.append(_check_section(differences(columns)))
+    sections.append(_check_section(cross_checks(columns)))
     if failures:
         sections.append(Section("failed", "What could not be solved", [], failures[:200]))
-    return sections
+    told = [("implausible", text) for text in study.warnings] + [("beyond", text) for text in warnings]
+    head = [("study", study.title), ("source", study.source), *told, *facts]
+    footer = f"Written by coatcheck from {table.name} beside this file."
+    write_atomically(page, render_sections("coatcheck study", summary, head, sections, footer))
+    return Written(page, tuple(answer), warnings)
 
 
 def _inputs_section(study: Study) -> Section:
@@ -110,9 +98,9 @@ def _inputs_section(study: Study) -> Section:
     def called(key: str, text: str) -> str:
         return f"{study.names[key]}, {text}" if key in study.names else text
 
-    n = len(study.above)
-    own = called(f"coatings.{n}" if study.above + study.below else "coating", f"E = {moduli} GPa")
-    fixed = {"above": layers(study.above, "coatings"), "below": layers(study.below, "coatings", n + 1)}
+    n = study.swept
+    own = called(f"coatings.{n}" if study.held else "coating", f"E = {moduli} GPa")
+    fixed = {"above": layers(study.held[:n], "coatings"), "below": layers(study.held[n:], "coatings", n + 1)}
 
     ratios = ", ".join(f"{E / study.substrate[0]:.3g}" for E in study.moduli)
     h = study.thicknesses
@@ -164,7 +152,7 @@ def _load(study: Study) -> str:
     return f"{text}; extended down from {study.asked_from:g} N, where strengths were exceeded already"
 
 
-def _check_section(checks: Sequence[Difference]) -> Section:
+def _check_section(checks: Sequence[CrossCheck]) -> Section:
     """The largest differences of the other sources."""
     if not checks:
         return Section("checks", "Cross-check", [Part("No point was cross-checked.")])
@@ -211,7 +199,7 @@ def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Sectio
     ]
     captions = {
         "stress": "Lines: semi-analytical method; triangles: finite elements; crosses: exact reference, at "
-        "the cross-checked points; below, how far these are from the lines. ",
+        "the cross-checked points. ",
         "contact": "Lines, triangles, crosses as above. ",
         "contours": "Sliding in +x. Thick bar: the contact; dashed: the interface. All thicknesses have the "
         "same extent and the same scales. ",

@@ -5,7 +5,7 @@ Lengths and stresses are in the units of the study; second axes give them over a
 
 import io
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +18,6 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.colors import ListedColormap
-from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -34,14 +33,14 @@ from verification.sources.source_registry import SOURCES as RECORDS
 from verification.study.choice.failure_criteria import MODES
 from verification.study.choice.thickness_choice import Choice
 from verification.study.largest_stresses import QUANTITIES
-from verification.study.study_table import SCALARS, SOURCES
-from verification.study.thickness_curves import Curve
+from verification.study.study_table import SCALARS, SCALES, SOURCES
+from verification.study.thickness_curves import ThicknessCurve
 
 # Okabe and Ito's colours, distinct for the colour-blind; dashes distinguish friction.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000")
+COLOUR_OF = dict(zip(MODES, COLOURS, strict=True))
 DASHES: tuple[Any, ...] = ("-", (0, (5, 2)), (0, (1.2, 1.4)), (0, (5, 1.5, 1, 1.5)))
 COLUMN, LEFT, TOP, BOTTOM, ROW = 88.0, 15.0, 9.5, 9.0, 3.7  # mm; a row of the legend
-LEAST = 1e-7  # smaller differences are drawn here
 NAMES = {
     "sigma_xx_surface": r"largest $\sigma_{xx}$, surface",
     "sigma_xx_base": r"largest $\sigma_{xx}$, base",
@@ -61,6 +60,9 @@ _SETTINGS: Any = {
     "pdf.fonttype": 42,
     "svg.hashsalt": "coatcheck",
     "savefig.facecolor": "white",
+    "axes.grid": True,
+    "grid.linewidth": 0.3,
+    "grid.color": "#cccccc",
 }
 
 
@@ -98,12 +100,18 @@ def sheet(height: float, legend: int = 0, right: float = 13.5) -> Iterator[Figur
         yield figure
 
 
-def drawn(figure: Figure, name: str, title: str, caption: str, rows: Sequence[Sequence[str]]) -> Drawn:
-    """``figure`` written both ways; the same figure always gives the same bytes."""
+def drawn(
+    figure: Figure, name: str, title: str, caption: str, rows: Sequence[Sequence[str | float]]
+) -> Drawn:
+    """``figure`` written both ways; the same figure always gives the same bytes.
+
+    rows : its numbers, heads first.
+    """
     pdf, svg = io.BytesIO(), io.BytesIO()
     FigureCanvasPdf(figure).print_figure(pdf, format="pdf", metadata={"CreationDate": None}, dpi=300)
     FigureCanvasSVG(figure).print_figure(svg, format="svg", metadata={"Date": None}, dpi=200)
-    return Drawn(name, title, caption, pdf.getvalue(), svg.getvalue(), written(rows))
+    numbers = written([[one if isinstance(one, str) else f"{one:.9g}" for one in row] for row in rows])
+    return Drawn(name.replace(".", "_"), title, caption, pdf.getvalue(), svg.getvalue(), numbers)
 
 
 def write_drawn(figure: Drawn, folder: Path) -> None:
@@ -112,7 +120,7 @@ def write_drawn(figure: Drawn, folder: Path) -> None:
         write_atomically(folder / f"{figure.name}.{kind}", data)
 
 
-def stress_figures(curves: Sequence[Curve], units: Units) -> list[Drawn]:
+def stress_figures(curves: Sequence[ThicknessCurve], units: Units) -> list[Drawn]:
     """For each failure mode its stress against thickness, compliant above stiff coatings."""
     return [
         _against_thickness(curves, units, f"stress_{name}", [name], f"{name}: {MODES[name]}")
@@ -120,7 +128,7 @@ def stress_figures(curves: Sequence[Curve], units: Units) -> list[Drawn]:
     ]
 
 
-def contact_figure(curves: Sequence[Curve], units: Units) -> list[Drawn]:
+def contact_figure(curves: Sequence[ThicknessCurve], units: Units) -> list[Drawn]:
     """Peak pressure, contact radius and approach against thickness; they do not depend on friction."""
     smallest = min(curve.friction for curve in curves)
     chosen = [curve for curve in curves if curve.friction == smallest]
@@ -128,12 +136,8 @@ def contact_figure(curves: Sequence[Curve], units: Units) -> list[Drawn]:
     return [_against_thickness(chosen, units, "contact", list(SCALARS), title)]
 
 
-def _values(curve: Curve, quantity: str) -> Array:
-    return curve.stress[quantity] if quantity in curve.stress else curve.scalar[quantity]
-
-
 def _against_thickness(
-    curves: Sequence[Curve], units: Units, name: str, quantities: Sequence[str], title: str
+    curves: Sequence[ThicknessCurve], units: Units, name: str, quantities: Sequence[str], title: str
 ) -> Drawn:
     sides = [
         ("compliant coating, $E_1 < E_2$", [c for c in curves if c.ratio < 1]),
@@ -150,63 +154,37 @@ def _against_thickness(
     ratios = sorted({c.ratio for c in curves})
     colours = {ratio: COLOURS[i % len(COLOURS)] for i, ratio in enumerate(ratios)}
     thickness = f"h [{units.length}]"
-    rows = [["E1/E2", "f", "h / a_h", thickness, "quantity", "over its scale", "value", "unit", "source"]]
-    checked = len(quantities) == 1 and any(curve.marks for curve in curves)
-    heights = [3.0] * len(panels_of) + [1.3] * checked
-    sources = {s for c in curves for s in c.marks}
-    keys = _keys(ratios, frictions, sources)
-    with sheet(TOP + BOTTOM + 13.5 * sum(heights), -(-len(keys) // 3)) as figure:
-        panels = figure.subplots(len(heights), 1, sharex=True, squeeze=False, height_ratios=heights)[:, 0]
-        for axes, (quantity, heading, members) in zip(panels, panels_of, strict=False):
-            scale = SCALARS.get(quantity, "p_h")
+    rows: list[Sequence[str | float]] = [
+        ["E1/E2", "f", "h / a_h", thickness, "quantity", "over its scale", "value", "unit", "source"]
+    ]
+    keys = _keys(ratios, frictions, {s for c in curves for s in c.marks})
+    with sheet(TOP + BOTTOM + 40.5 * len(panels_of), -(-len(keys) // 3)) as figure:
+        panels = figure.subplots(len(panels_of), 1, sharex=True, squeeze=False)[:, 0]
+        for axes, (quantity, heading, members) in zip(panels, panels_of, strict=True):
+            scale = SCALES[quantity]
             unit, one_unit = (units.stress, units.pascal) if scale == "p_h" else (units.length, units.metre)
             size = getattr(curves[0], scale) / one_unit
             for curve in members:
                 colour, h = colours[curve.ratio], curve.a_h / units.metre
                 dash = DASHES[frictions.index(curve.friction) % len(DASHES)]
-                axes.plot(curve.h * h, _values(curve, quantity) * size, color=colour, linestyle=dash)
-                points = {SOURCES[0]: (curve.h, _values(curve, quantity))}
+                axes.plot(curve.h * h, curve.value[quantity] * size, color=colour, linestyle=dash)
+                points = {SOURCES[0]: (curve.h, curve.value[quantity])}
                 for source, marks in curve.marks.items():
-                    at, value = marks[quantity]
+                    at, value = points[source] = marks[quantity]
                     _mark(axes, at * h, value * size, source, colour)
-                    points[source] = marks[quantity]
                 rows += [
-                    [
-                        *(f"{curve.ratio:g}", f"{curve.friction:g}", f"{x:.9g}", f"{x * h:.6g}", quantity),
-                        *(f"{y:.9g}", f"{y * size:.6g}", unit, source),
-                    ]
+                    [curve.ratio, curve.friction, x, x * h, quantity, y, y * size, unit, source]
                     for source, (at, value) in points.items()
                     for x, y in zip(at, value, strict=True)
                 ]
             axes.set_ylabel(f"{NAMES.get(quantity) or f'${QUANTITY[quantity].tex}$'} [{unit}]")
             _beside(axes, size, f"over ${scale}$".replace("delta", r"\delta"))
-            axes.grid(True, linewidth=0.3, color="#cccccc")
             if heading:
                 axes.text(0.5, 0.97, heading, transform=axes.transAxes, ha="center", va="top")
                 axes.margins(y=0.12)
-        if checked:
-            _differences(panels[-1], curves, units, quantities[0], colours)
         thickness_axes(list(panels), curves[0].a_h / units.metre, units)
         below(figure, keys, 3)
         return drawn(figure, name, title, "", rows)
-
-
-def _differences(
-    axes: Axes, curves: Sequence[Curve], units: Units, quantity: str, colours: dict[float, str]
-) -> None:
-    """|mark - curve| at every cross-checked thickness, on a logarithmic scale that ends at ``LEAST``."""
-    for curve in curves:
-        for source, marks in curve.marks.items():
-            at, value = marks[quantity]
-            known = np.isin(at, curve.h)
-            here = _values(curve, quantity)[np.searchsorted(curve.h, at[known])]
-            gap = np.maximum(np.abs(value[known] - here), LEAST)
-            _mark(axes, at[known] * curve.a_h / units.metre, gap, source, colours[curve.ratio])
-    axes.set_yscale("log")
-    axes.set_ylim(0.6 * LEAST, 1e-2)
-    axes.set_yticks([1e-7, 1e-5, 1e-3])
-    axes.grid(True, linewidth=0.3, color="#cccccc")
-    axes.set_ylabel("difference\nover $p_h$")
 
 
 def _mark(axes: Axes, h: Array, value: Array, source: str, colour: str) -> None:
@@ -270,63 +248,69 @@ def below(figure: Figure, handles: Sequence[Artist], columns: int) -> None:
     )
 
 
+def draw_use(axes: Axes, x: Array, use: Mapping[str, Array]) -> None:
+    """Stress over strength of each mode along ``x``, with the line where they are equal."""
+    for mode, one in use.items():
+        axes.plot(x, one, color=COLOUR_OF[mode], label=mode)
+    axes.axhline(1.0, color="#c02a2a", linewidth=0.9, linestyle=(0, (4, 2)))
+    axes.set_ylabel("stress over strength")
+
+
+def draw_shares(axes: Axes, x: Array, shares: Mapping[str, Array], rest: float | None = None) -> None:
+    """Probabilities of each mode along ``x``, stacked; ``rest``, of no single mode, below them in grey."""
+    colours = [pale(COLOUR_OF[mode]) for mode in shares]
+    stacked = [*shares.values()]
+    if rest is not None:
+        colours, stacked = [mpl.colors.to_rgba("#bbbbbb"), *colours], [np.full(x.shape, rest), *stacked]
+    axes.stackplot(x, *stacked, colors=colours, linewidth=0)
+    axes.set_ylim(0, 1)
+
+
 def use_figures(choices: Sequence[Choice], units: Units) -> list[Drawn]:
     """Stress over strength against thickness, admissible ranges shaded; [] where no strengths are given.
 
-    Of strengths that scatter the probability that each mode governs too, and that any fails.
+    For strengths that scatter the probability that each mode governs too, and that any fails.
     """
-    return [_use(choice, units) for choice in choices if choice.judgements[0].limited]
+    return [_use(choice, units) for choice in choices if choice.criteria.limited]
 
 
 def _use(choice: Choice, units: Units) -> Drawn:
-    curve, modes = choice.judgements[0].curve, choice.judgements[0].modes
+    curve, modes = choice.curves[0], choice.modes
     size = curve.a_h / units.metre
     scattered = choice.criteria.scatters
-    colours = [COLOURS[list(MODES).index(mode)] for mode in modes]
-    use = choice.use.max(axis=0)
+    use = dict(zip(modes, choice.use.max(axis=0), strict=True))
     some = np.linspace(0, choice.h.size - 1, 81).astype(int)
     h = choice.h[some] * size
-    rows = [["h / a_h", f"h [{units.length}]", *modes]]
-    numbers = [use[:, some]]
+    heads, numbers = ["h / a_h", f"h [{units.length}]", *modes], [choice.h, choice.h * size, *use.values()]
+    columns = [one[some] for one in numbers]
     with sheet(72 + 38 * scattered, (len(modes) + scattered + 1) // 2, right=4) as figure:
         panels = figure.subplots(1 + scattered, 1, sharex=True, squeeze=False)[:, 0]
         axes = panels[0]
         for pair in choice.ranges:
             ends = [edge if end is None else end.h for end, edge in zip(pair, choice.h[[0, -1]], strict=True)]
             axes.axvspan(ends[0] * size, ends[1] * size, color="#d5efe1", linewidth=0)
-        for colour, mode, one in zip(colours, modes, use, strict=True):
-            axes.plot(choice.h * size, one, color=colour, label=mode)
-        axes.axhline(1.0, color="#c02a2a", linewidth=0.9, linestyle=(0, (4, 2)))
+        draw_use(axes, choice.h * size, use)
         axes.set_yscale("log")
-        axes.set_ylim(0.02, 1.5 * max(1.0, float(use.max())))
-        axes.set_ylabel("stress over strength")
-        axes.grid(True, linewidth=0.3, color="#cccccc")
+        axes.set_ylim(0.02, 1.5 * max(1.0, max(float(one.max()) for one in use.values())))
         caption = (
             "Largest over all frictions. Green: admissible thicknesses, where every stress stays below its "
             "strength" + (f", the {100 * choice.criteria.fractile:g} % fractile." if scattered else ".")
         )
         if scattered:
             chances = choice.chances(choice.h[some])
-            axes = panels[1]
-            axes.stackplot(h, *chances.governs, colors=[pale(c) for c in colours], linewidth=0)
-            axes.plot(h, chances.fails, color="black", label="coating fails")
-            axes.set_ylim(0, 1)
-            axes.set_ylabel("probability")
+            draw_shares(panels[1], h, dict(zip(modes, chances.governs, strict=True)))
+            panels[1].plot(h, chances.fails, color="black", label="coating fails")
+            panels[1].set_ylabel("probability")
             caption += (
                 " Below: probability that each mode governs; line: that any stress exceeds its strength."
             )
-            rows[0] += [f"{mode} governs" for mode in modes] + ["fails"]
-            numbers += [chances.governs, chances.fails[None]]
+            heads += [*(f"{mode} governs" for mode in modes), "fails"]
+            columns += [*chances.governs, chances.fails]
         thickness_axes(list(panels), size, units)
         handles = [line for one in panels for line in one.get_legend_handles_labels()[0] if line in one.lines]
         below(figure, handles, 2)
-        values = np.concatenate(numbers)
-        rows += [
-            [f"{choice.h[i]:.6g}", f"{x:.6g}", *(f"{v:.6g}" for v in column)]
-            for i, x, column in zip(some, h, values.T, strict=True)
-        ]
-        name = f"use_{curve.ratio:.4g}".replace(".", "_")
-        return drawn(figure, name, f"Stress over strength, E1/E2 = {curve.ratio:.4g}", caption, rows)
+        title = f"Stress over strength, E1/E2 = {curve.ratio:.4g}"
+        return drawn(figure, f"use_{curve.ratio:.4g}", title, caption, [heads, *np.transpose(columns)])
 
 
 def governing_figure(choices: Sequence[Choice], units: Units) -> list[Drawn]:
@@ -337,57 +321,46 @@ def governing_figure(choices: Sequence[Choice], units: Units) -> list[Drawn]:
     """
     if len(choices) < 2:
         return []
-    first = choices[0].judgements[0]
-    modes, size = first.modes, first.curve.a_h / units.metre
+    first = choices[0]
+    modes, size = first.modes, first.curves[0].a_h / units.metre
     over, ratio, use = _map(choices)
     h, governing, largest = over * size, use.argmax(axis=0), use.max(axis=0)
     with sheet(78, len(modes), right=4) as figure:
         axes = figure.subplots(1, 1)
-        colours = ListedColormap([pale(COLOURS[list(MODES).index(mode)]) for mode in modes])
+        axes.grid(visible=False)
+        colours = ListedColormap([pale(COLOUR_OF[mode]) for mode in modes])
         axes.pcolormesh(
             h, ratio, governing, cmap=colours, vmin=-0.5, vmax=len(modes) - 0.5, shading="nearest",
             rasterized=True
         )  # fmt: skip
         lines = axes.contour(h, ratio, largest, levels=6, colors="#555555", linewidths=0.6)
-        axes.clabel(lines, fontsize=6, fmt="%.3g", manual=_places(lines, h, ratio))
-        if first.limited:
+        axes.clabel(lines, fontsize=6, fmt="%.3g")
+        if first.criteria.limited:
             axes.contour(h, ratio, largest, levels=[1.0], colors="#c02a2a", linewidths=1.6)
-        for curve in (one.judgements[0].curve for one in choices):
+        for curve in (one.curves[0] for one in choices):
             axes.plot(curve.h * size, np.full_like(curve.h, curve.ratio), ".", color="#222222", ms=1.6)
         axes.set_yscale("log")
         axes.yaxis.set_minor_formatter(NullFormatter())
-        axes.set_yticks(sorted({one.judgements[0].curve.ratio for one in choices}))
+        axes.set_yticks(sorted({one.curves[0].ratio for one in choices}))
         axes.yaxis.set_major_formatter(lambda y, _: f"{y:.3g}")
         axes.set_ylabel("$E_1/E_2$")
         thickness_axes([axes], size, units)
-        handles = [Patch(color=pale(COLOURS[list(MODES).index(m)]), label=f"{m}: {MODES[m]}") for m in modes]
+        handles = [Patch(color=pale(COLOUR_OF[m]), label=f"{m}: {MODES[m]}") for m in modes]
         below(figure, handles, 1)
-        rows = [["E1/E2", "h / a_h", f"h [{units.length}]", "largest use", "governing"]]
+        rows: list[Sequence[str | float]] = [
+            ["E1/E2", "h / a_h", f"h [{units.length}]", "largest use", "governing"]
+        ]
         rows += [
-            [*(f"{x:.6g}" for x in (ratio[i], over[j], h[j], largest[i, j])), modes[governing[i, j]]]
+            [ratio[i], over[j], h[j], largest[i, j], modes[governing[i, j]]]
             for i in range(0, ratio.size, 4)
             for j in range(0, h.size, 8)
         ]
-        quantity = "stress over strength, red where it is 1" if first.limited else "stress over p_h"
+        quantity = "stress over strength, red where it is 1" if first.criteria.limited else "stress over p_h"
         caption = (
             "Colour: the mode whose stress is largest against its strength, at the worst friction. Lines: "
             f"the largest {quantity}. Dots: solved points."
         )
         return [drawn(figure, "governing_mode", "Governing failure mode", caption, rows)]
-
-
-def _places(lines: QuadContourSet, h: Array, ratio: Array) -> list[tuple[float, float]]:
-    """A point of each contour line for its number: off the frame, off the numbers of the lines beside it."""
-    low, high = np.log(ratio[[0, -1]]) + 0.06 * np.log(ratio[-1] / ratio[0]) * np.array([1, -1])
-    found = []
-    for i, path in enumerate(lines.get_paths()):
-        x, y = np.log(np.asarray(path.vertices).reshape(-1, 2)).T
-        inside = np.flatnonzero((y > low) & (y < high))
-        if inside.size:
-            wanted = np.log(h[0]) + (0.3, 0.5, 0.7)[i % 3] * np.log(h[-1] / h[0])
-            at = inside[np.abs(x[inside] - wanted).argmin()]
-            found.append((float(np.exp(x[at])), float(np.exp(y[at]))))
-    return found
 
 
 def pale(colour: str) -> tuple[float, float, float, float]:
@@ -397,9 +370,9 @@ def pale(colour: str) -> tuple[float, float, float, float]:
 
 def _map(choices: Sequence[Choice]) -> tuple[Array, Array, Array]:
     """h/a_h, E1/E2, uses of strength (modes, ratios, thicknesses) on a dense grid."""
-    members = sorted(choices, key=lambda one: one.judgements[0].curve.ratio)
+    members = sorted(choices, key=lambda one: one.curves[0].ratio)
     h = np.geomspace(max(one.h[0] for one in members), min(one.h[-1] for one in members), 240)
-    known = np.log([one.judgements[0].curve.ratio for one in members])
+    known = np.log([one.curves[0].ratio for one in members])
     ratio = np.exp(np.linspace(known[0], known[-1], 120))
     rows = np.stack(
         [PchipInterpolator(np.log(one.h), one.use.max(axis=0), axis=1)(np.log(h)) for one in members], axis=1

@@ -11,12 +11,10 @@ import numpy as np
 
 from verification.cases.unit_numbers import Units
 from verification.page.page_parts import Cell, Part, Section, Table, Value, number, row, table_of
-from verification.page.source_labels import source_label
-from verification.study.choice.elastic_limits import beyond_elastic
-from verification.study.choice.failure_criteria import MODES, judged
+from verification.study.choice.failure_criteria import MODES
 from verification.study.choice.thickness_choice import DRAWN, Choice, End, Range, choice
 from verification.study.pages.contour_maps import contour_figures, nearest
-from verification.study.pages.study_assembly import Draw, Written, common_sections, write_page
+from verification.study.pages.study_assembly import Draw, Written, write_page
 from verification.study.pages.study_figures import (
     Drawn,
     contact_figure,
@@ -26,23 +24,9 @@ from verification.study.pages.study_figures import (
 )
 from verification.study.study_plan import Study
 from verification.study.study_table import read_columns
-from verification.study.thickness_curves import Curve, curves
+from verification.study.thickness_curves import ThicknessCurve, curves
 
 DIGITS = 2  # of a thickness, at most
-
-
-def near(curve: Curve, h: float, mode: str) -> dict[str, tuple[float, float]]:
-    """By source the cross-check of ``mode`` nearest to ``h`` over a_h: its h, its |difference| over p_h."""
-    found = {}
-    for source, marks in curve.marks.items():
-        at, value = marks[mode]
-        known = np.isin(at, curve.h) & np.isfinite(value)
-        if not known.any():
-            continue
-        i = int(np.flatnonzero(known)[np.abs(np.log(at[known] / h)).argmin()])
-        here = float(curve.stress[mode][np.flatnonzero(curve.h == at[i])[0]])
-        found[source] = float(at[i]), abs(float(value[i]) - here)
-    return found
 
 
 def rounded(value: float, uncertainty: float, upwards: bool | None = None) -> str:
@@ -68,18 +52,18 @@ def answers(choices: Sequence[Choice], units: Units) -> list[str]:
 
 
 def _answer(found: Choice, units: Units, *, several: bool) -> str:
-    frictions = [j.curve.friction for j in found.judgements]
+    frictions = [one.friction for one in found.curves]
     at = f"f = {frictions[0]:g}" + (f" to {frictions[-1]:g}" if len(frictions) > 1 else "")
-    name = f"E1/E2 = {found.judgements[0].curve.ratio:.3g}: " if several else ""
-    if not found.judgements[0].limited:
+    name = f"E1/E2 = {found.curves[0].ratio:.3g}: " if several else ""
+    if not found.criteria.limited:
         return f"{name}{_even(found, units)} at {at}{_limits(found, found.even)}."
     if not found.ranges:
-        judgement, mode = found.governing(found.best)
+        mode, friction = found.governing(found.best)
         use = rounded(found.least, found.error)
         return (
             f"{name}no thickness of the sweep keeps every stress below its strength at {at}; even the best, "
             f"{_length(found, found.best, units)}, uses {use} of it: {MODES[mode]} "
-            f"(f = {judgement.curve.friction:g})."
+            f"(f = {friction:g})."
         )
     parts = []
     for pair in found.ranges:
@@ -99,7 +83,7 @@ def _even(found: Choice, units: Units) -> str:
 def between(found: Choice, pair: Range, units: Units, *, safe: bool = False) -> str:
     """ "2 to 10 µm"; inwards where ``safe``, with the ends of the sweep named."""
     low, high = pair
-    scale = found.judgements[0].curve.a_h / units.metre
+    scale = found.curves[0].a_h / units.metre
     ends = []
     for end, edge, upwards in ((low, found.h[0], True), (high, found.h[-1], False)):
         value, U = (float(edge), 0.0) if end is None else (end.h, end.uncertainty)
@@ -112,7 +96,7 @@ def between(found: Choice, pair: Range, units: Units, *, safe: bool = False) -> 
 
 
 def _length(found: Choice, h: float, units: Units) -> str:
-    return f"{rounded(h * found.judgements[0].curve.a_h / units.metre, 0.0)} {units.length}"
+    return f"{rounded(h * found.curves[0].a_h / units.metre, 0.0)} {units.length}"
 
 
 def _limits(found: Choice, pair: Range) -> str:
@@ -133,33 +117,8 @@ def _share(found: Choice, end: End) -> str:
     chances = found.chances(np.array([end.h]))
     if not chances.fails[0]:
         return ""
-    share = chances.breaks[found.judgements[0].modes.index(end.mode), 0] / chances.fails[0]
+    share = chances.breaks[found.modes.index(end.mode), 0] / chances.fails[0]
     return f"{100 * share:.0f} % of the failures there, "
-
-
-def checked_message(choice: Choice, units: Units) -> str:
-    """The cross-checks nearest to what is recommended, every source with its worst; "" without any."""
-    pairs = [*choice.ranges, choice.even]
-    places = [(end.h, end.mode, end.friction) for pair in pairs for end in pair if end is not None]
-    judgement, mode = choice.governing(choice.best)
-    places.append((choice.best, mode, judgement.curve.friction))
-    curves = {j.curve.friction: j.curve for j in choice.judgements}
-    worst: dict[str, tuple[float, str]] = {}
-    for h, mode, f in places:
-        for source, (at, difference) in near(curves[f], h, mode).items():
-            if difference > worst.get(source, (-1.0, ""))[0]:
-                worst[source] = difference, f"{mode}, {_length(choice, at, units)}, f = {f:g}"
-    if not worst:
-        return ""
-    scale = judgement.curve.p_h / units.pascal
-    parts = [
-        f"at most {scale * difference:.1g} {units.stress} off the {source_label(source)} ({place})"
-        for source, (difference, place) in worst.items()
-    ]
-    return (
-        f"E1/E2 = {judgement.curve.ratio:.3g}: at the checked thicknesses nearest to these the governing "
-        f"stresses are {' and '.join(parts)}."
-    )
 
 
 CONTOURS = (0.1, 0.5, 2.0)  # h/a_h; the solved ones nearest to these
@@ -184,10 +143,7 @@ def write_study_report(
     every = curves(columns)
     found = [c for c in every if c.h.size >= 2]
     ratios = sorted({c.ratio for c in found})
-    choices = [
-        choice([judged(c, study.criteria) for c in found if c.ratio == ratio], study.criteria)
-        for ratio in ratios
-    ]
+    choices = [choice([c for c in found if c.ratio == ratio], study.criteria) for ratio in ratios]
     failures = [f"{c.label}, h = {h:.4g} a_h: {message}" for c in every for h, message in c.failures]
     draws: list[Draw] = []
     if found and figures:
@@ -199,14 +155,11 @@ def write_study_report(
             ("contact", "The contact against thickness", lambda: contact_figure(found, units)),
         ]
     said = answers(choices, units)
-    first = _preference(study, choices, said)
-    sections = [first, *common_sections(study, folder, draws, columns, failures, drawing)]
-    solved = sum(c.h.size for c in every)
-    lost = sum(len(c.failures) for c in every)
+    solved, lost = (sum(counts) for counts in ([c.h.size for c in every], [len(c.failures) for c in every]))
     points = ("points", f"{solved} solved" + (f", {lost} could not be" if lost else ""))
     summary = " ".join(said) or f"No answer: no curve of {study.title} has two solved points."
-    beyond = beyond_elastic(study, columns)
-    return write_page(table, study, folder, said, summary, sections, [points], facts, beyond)
+    first, about = _preference(study, choices, said), [points, *facts]
+    return write_page(table, study, folder, columns, said, summary, first, draws, failures, about, drawing)
 
 
 def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) -> Section:
@@ -215,22 +168,19 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
     rows = [
         one
         for every in choices
-        for one in (
-            every,
-            *(choice([j], study.criteria) for j in every.judgements if len(every.judgements) > 1),
-        )
+        for one in (every, *(choice([one], study.criteria) for one in every.curves if len(every.curves) > 1))
     ]
-    limited = any(one.judgements[0].limited for one in choices)
+    limited = study.criteria.limited
 
     def lengths(text: str) -> str:
         return text.replace(f" {units.length}", "")
 
     def friction(one: Choice) -> Value:
-        f = [j.curve.friction for j in one.judgements]
+        f = [curve.friction for curve in one.curves]
         return number(f[0], "{:g}".format) if len(f) == 1 else f"{f[0]:g} to {f[-1]:g}"
 
     columns: list[tuple[str, Callable[[Choice], Value]]] = [
-        ("E1/E2", lambda one: number(one.judgements[0].curve.ratio, "{:.4g}".format)),
+        ("E1/E2", lambda one: number(one.curves[0].ratio, "{:.4g}".format)),
         ("f", friction),
         (f"best h [{units.length}]", lambda one: lengths(between(one, one.even, units))),
         ("tolerance", lambda one: number(one.tolerance, "{:.1%}".format)),
@@ -254,19 +204,15 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
         "stress exceeds the smallest by no more than the tolerance, 1 % or the error of interpolation.",
         rows,
         columns,
-        row_css=lambda one: "" if one.ranges or not one.judgements[0].limited else "disagrees",
+        row_css=lambda one: "" if one.ranges or not limited else "disagrees",
     )
-    texts = [
-        *(said if len(said) > 1 else []),
-        study.criteria.description(),
-        *filter(None, (checked_message(one, units) for one in choices)),
-    ]
+    texts = [*(said if len(said) > 1 else []), study.criteria.description()]
     parts = [*(Part(text) for text in texts), Part("", [table])]
     return Section("preferable", "Which thickness", [*parts, *_chances(study, choices)])
 
 
 def _mode(one: Choice) -> str:
-    return one.governing(one.best)[1]
+    return one.governing(one.best)[0]
 
 
 def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
@@ -280,7 +226,7 @@ def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
             places |= {"limit below": low.h} if low else {}
             places |= {"limit above": high.h} if high else {}
         chances = one.chances(np.array([*places.values()]))
-        curve = one.judgements[0].curve
+        curve = one.curves[0]
         for k, (what, h) in enumerate(places.items()):
             rows.append(
                 row(
@@ -293,15 +239,15 @@ def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
     table = Table(
         f"Probability that each mode governs and that any stress exceeds its strength, by {DRAWN} samples "
         "of the strengths at the worst friction; standard error below 0.4 %.",
-        ["E1/E2", "at", f"h [{study.units.length}]", *choices[0].judgements[0].modes, "fails"],
+        ["E1/E2", "at", f"h [{study.units.length}]", *choices[0].modes, "fails"],
         rows,
     )
     return [Part("", [table], title="Probabilities")]
 
 
-def _maps(study: Study, found: Sequence[Curve], failures: list[str]) -> list[Drawn]:
+def _maps(study: Study, found: Sequence[ThicknessCurve], failures: list[str]) -> list[Drawn]:
     """Contours of the most compliant and the stiffest coating at the middle friction; none of a stack."""
-    if study.above or study.below:
+    if study.held:
         return []
     frictions = sorted({c.friction for c in found})
     middle = [c for c in found if c.friction == frictions[len(frictions) // 2]]
