@@ -40,6 +40,7 @@ from verification.commands.common.terminal import (
 )
 from verification.commands.common.terminal_bar import require_gmsh
 from verification.evidence.alarm_record import DECADES, Alarm, AlarmRecord, Ratios, write_record
+from verification.evidence.judged_source import source_hash
 from verification.judging.verdict import Outcome
 from verification.regression.junit_xml import junit_xml
 from verification.regression.run_exit_codes import exit_code
@@ -168,6 +169,7 @@ def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRec
         info.machine,
         dict(info.versions),
         tuple(_ratios(results, source) for source in METHODS),
+        source_hash("alarms"),
     )
 
 

@@ -2,7 +2,6 @@
 
 from verification.credibility.accuracy_study import CORRECTED, PLAIN, STAIRCASE, AccuracyStudy
 from verification.credibility.refinement_studies import QUANTITIES, Refinement, RefinementLevel
-from verification.judging.invariants.influence_error import ConversionError
 
 PATCHES = (33, 65, 129, 257)
 
@@ -25,12 +24,6 @@ def elements(order: int) -> Refinement:
     return Refinement("fem_reference", "coated", f"order {order}", levels)
 
 
-def conversion(name: str, enlarge: int, aliases: int, error: float) -> ConversionError:
-    """The same relative error at every patch."""
-    distance = (0.0, 0.1, 0.4, 1.2, 3.1)
-    return ConversionError(name, enlarge, 0.01, distance, (error,) * len(distance), error, aliases)
-
-
 def study(*failures: str) -> AccuracyStudy:
     """One of everything that a study holds."""
     return AccuracyStudy(
@@ -42,13 +35,7 @@ def study(*failures: str) -> AccuracyStudy:
             falling(STAIRCASE, 1.0, solid="uncoated"),
             *(elements(order) for order in (2, 3, 4)),
         ),
-        (
-            conversion("split", 0, 0, 2e-12),
-            *(conversion("plain", wide, 0, 0.16) for wide in (2, 4, 8, 16)),
-            *(conversion("plain", wide, 2, 0.004) for wide in (2, 4, 8, 16)),
-        ),
         failures,
         9.5,
         "a28aa40c1d2e",
-        {"numpy": "2.4.0"},
     )

@@ -1,11 +1,10 @@
 """The accuracy study of a default run: convergence on two solids of known solution, discs and ellipses."""
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 from verification.credibility.exact_errors import (
     ExactError,
@@ -19,16 +18,15 @@ from verification.credibility.exact_errors import (
 from verification.credibility.refinement_studies import Refinement, refined_grid, refined_mesh
 from verification.credibility.study_verdicts import CORRECTED, PLAIN, STAIRCASE, verdicts
 from verification.judging.invariant_verdict import Invariant
-from verification.judging.invariants.influence_error import ConversionError, conversion_errors
 from verification.problem.coated_contact import CoatedContact
 from verification.running.case_result import message_of
 from verification.running.checked_files import write_checked
 from verification.running.json_records import RecordFile, decode
 from verification.running.pool.pool_task import Task
-from verification.running.provenance import commit, versions
+from verification.running.provenance import fingerprint
 from verification.sources.source_registry import solvers
 
-SCHEMA = "coatcheck-accuracy/4"
+SCHEMA = "coatcheck-accuracy/5"
 # The error of the corrected edge is followed to the grid in use.
 FINE = (41, 49, 65, 97, 129, 257)
 STEEL = (210e9, 0.3)
@@ -39,44 +37,31 @@ FILM = replace(COATED, coatings=((STEEL[0] / 10, 0.3, 0.3 * BARE.a_h),))  # whos
 COST = 7.0  # of the whole study, over that of an uncoated contact
 PROBLEM = "a sphere of 10 mm under 20 N on steel, bare or with a coating of E1/E2 = 4, h = a_h"
 
-T = TypeVar("T")
-
 
 @dataclass(frozen=True)
 class AccuracyStudy:
     """Errors of both methods with provenance; ``failures`` are messages on what could not be computed.
 
-    conversions : of the coated solid.   discs : under given pressures.   ellipses : contacts
-    that are no discs, with iterations and grids of a disc.
-    commit : None outside a checkout.
+    errors : of given pressures on discs, convolution, coefficients; of contacts that are no discs; iterations
+    and grids of a disc.   made_by : fingerprint of the code.
     """
 
     refinements: tuple[Refinement, ...]
-    conversions: tuple[ConversionError, ...]
     failures: tuple[str, ...]
     seconds: float
-    commit: str | None
-    versions: dict[str, str]
-    discs: tuple[ExactError, ...] = ()
-    ellipses: tuple[ExactError, ...] = ()
+    made_by: str
+    errors: tuple[ExactError, ...] = ()
 
     @property
     def verdicts(self) -> tuple[Invariant, ...]:
         """Each part of the semi-analytical method beside its limit."""
-        return verdicts(self.refinements, self.discs + self.ellipses, self.conversions, self.failures)
+        return verdicts(self.refinements, self.errors, self.failures)
 
 
 def measure() -> AccuracyStudy:
     """Compute every part of the study; a part that fails leaves a message, the others are computed."""
     begin = time.perf_counter()
     failures: list[str] = []
-
-    def attempt(part: str, compute: Callable[[], tuple[T, ...]]) -> tuple[T, ...]:
-        try:
-            return compute()
-        except Exception as error:  # a message of the report, not a traceback
-            failures.append(f"{part}: {message_of(error)}")
-            return ()
 
     available = solvers(COATED)
     grid = partial(refined_grid, solve=available["semianalytic"])
@@ -92,39 +77,39 @@ def measure() -> AccuracyStudy:
         *(mesh(order) for order in (2, 3, 4)),
     )
     failures += [f"{r.method}, {r.solid}, {r.setting}, {r.failure}" for r in refinements if r.failure]
-    conversions = attempt("conversions of the influence coefficients", lambda: conversion_errors(COATED))
-    discs = attempt("discs", lambda: discs_of())
-    ellipses = attempt("ellipses", lambda: tuple(turned_ellipse(BARE, "load")))
-    ellipses += attempt("ellipses", lambda: tuple(turned_ellipse(BARE, "approach")))
-    ellipses += attempt("iterations", lambda: tuple(iteration_counts(COATED, "coated")))
-    ellipses += attempt("grids", lambda: tuple(grid_ratios(COATED, "coated")))
+    errors: list[ExactError] = []
+    for part, compute in {
+        "discs": discs_of,
+        "ellipses": lambda: [e for given in ("load", "approach") for e in turned_ellipse(BARE, given)],
+        "iterations": lambda: iteration_counts(COATED, "coated"),
+        "grids": lambda: grid_ratios(COATED, "coated"),
+    }.items():
+        try:
+            errors += compute()
+        except Exception as error:  # a message of the report, not a traceback
+            failures.append(f"{part}: {message_of(error)}")
     seconds = time.perf_counter() - begin
-    return AccuracyStudy(
-        refinements, conversions, tuple(failures), seconds, commit(), versions(), discs, ellipses
-    )
+    return AccuracyStudy(refinements, tuple(failures), seconds, fingerprint(), tuple(errors))
 
 
-def discs_of() -> tuple[ExactError, ...]:
-    """Given pressures on both solids, Hertz's sliding on the coated one; DC-FFT; one patch of thin films."""
+def discs_of() -> list[ExactError]:
+    """Given pressures on both solids, Hertz's sliding on the coated one; DC-FFT; one patch of films."""
     found = disc_errors(COATED, "coated", FRICTION) + disc_errors(BARE, "uncoated", 0.0)
-    return (*found, *convolution_errors(COATED, "coated"), *film_errors(COATED))
+    return found + convolution_errors(COATED, "coated") + film_errors(COATED)
 
 
 def failed(reason: str, seconds: float) -> AccuracyStudy:
     """The study of a process that left nothing but the ``reason``."""
-    return AccuracyStudy((), (), (reason,), seconds, commit(), versions())
+    return AccuracyStudy((), (reason,), seconds, fingerprint())
 
 
 def stored(folder: Path) -> AccuracyStudy | None:
-    """The earlier study where it has no failures and is of this commit and these versions, or None.
+    """The earlier study where it has no failures and is of this very code, or None.
 
-    The study of a tree that was changed since its commit (marked "+") is not used: the tree may have changed
-    since. Raises StoreError, naming the file, where the study is damaged.
+    Raises StoreError, naming the file, where the study is damaged.
     """
-    found, now = _FILE.read(folder), commit()
-    if found is None or found.failures or (now or "").endswith("+"):
-        return None
-    return found if (found.commit, found.versions) == (now, versions()) else None
+    found = _FILE.read(folder)
+    return found if found and not found.failures and found.made_by == fingerprint() else None
 
 
 def task(folder: Path) -> Task[AccuracyStudy]:

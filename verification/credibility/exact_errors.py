@@ -182,17 +182,19 @@ def convolution_errors(problem: CoatedContact, solid: str) -> list[ExactError]:
 
 
 def film_errors(problem: CoatedContact) -> list[ExactError]:
-    """Influence coefficients of films so thin that patches near the loaded one are integrated by quadrature.
+    """Influence coefficients of the coated solid, and of films thinner than those of any shipped case.
 
-    No shipped case has a film so thin on the patches of its last grid.
+    Patches near the loaded one are integrated by quadrature under such films.
     """
-    found = []
-    for name, thickness in FILMS.items():
-        (E, nu, _), *_ = problem.coatings
-        film = replace(problem, coatings=((E, nu, thickness * SIDE * problem.a_h),))
-        error = coefficient_error(film, SIDE * problem.a_h)
-        found.append(ExactError("one patch loaded", name, "influence coefficients", error))
-    return found
+    (E, nu, _), *_ = problem.coatings
+    side = SIDE * problem.a_h
+    solids = {"coated": problem} | {
+        name: replace(problem, coatings=((E, nu, patches * side),)) for name, patches in FILMS.items()
+    }
+    return [
+        ExactError("one patch loaded", name, "influence coefficients", coefficient_error(solid, side))
+        for name, solid in solids.items()
+    ]
 
 
 def iteration_counts(problem: CoatedContact, solid: str) -> list[ExactError]:

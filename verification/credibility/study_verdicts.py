@@ -24,7 +24,7 @@ import numpy as np
 from verification.credibility.exact_errors import ExactError
 from verification.credibility.refinement_studies import Refinement
 from verification.judging.invariant_verdict import Invariant, absent, decide
-from verification.judging.invariants.influence_error import BOUND, ConversionError
+from verification.judging.invariants.influence_error import BOUND
 from verification.judging.outcome import Outcome
 
 CORRECTED = "split conversion, corrected edge"
@@ -84,10 +84,7 @@ COUNTS = {"iterations": 12, "ratio of patches": 0.75}
 
 
 def verdicts(
-    refinements: Iterable[Refinement] = (),
-    errors: Iterable[ExactError] = (),
-    conversions: Iterable[ConversionError] = (),
-    failures: Iterable[str] = (),
+    refinements: Iterable[Refinement] = (), errors: Iterable[ExactError] = (), failures: Iterable[str] = ()
 ) -> tuple[Invariant, ...]:
     """A verdict on each part of the method: the error of its study is below its limit."""
     found: list[Invariant] = []
@@ -98,9 +95,6 @@ def verdicts(
         name = f"{one.solid}: {'disc, ' * (one.quantity in DISCS)}{one.pressure}: {one.quantity}"
         law = "below its limit" if one.quantity in COUNTS else EXACT
         found.append(_below(name, one.error, (DISCS | OTHERS | COUNTS)[one.quantity], law))
-    for conversion in conversions:
-        if conversion.conversion == "split":
-            found.append(_below("coated: influence coefficients", conversion.largest, BOUND))
     found += [
         absent(text.partition(":")[0], SOURCE, text)
         for text in failures

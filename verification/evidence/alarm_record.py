@@ -51,7 +51,7 @@ class Ratios:
 class AlarmRecord:
     """The alarms of ``problems`` random problems of ``seed``, with provenance and seconds in total.
 
-    agreeing : problems in which all comparisons agree and all invariants hold.
+    agreeing : problems in which all comparisons agree and all invariants hold.   source : hash of the code.
     """
 
     seed: int
@@ -66,6 +66,7 @@ class AlarmRecord:
     machine: str
     versions: dict[str, str]
     ratios: tuple[Ratios, ...] = ()
+    source: str = ""
 
     @property
     def false_alarms(self) -> tuple[Alarm, ...]:

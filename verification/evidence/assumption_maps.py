@@ -9,7 +9,7 @@ width : a_h/R;   friction : f;   ball : share of the ball in the contact's compl
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from math import prod
 from pathlib import Path
 
@@ -119,7 +119,7 @@ class MapAxis:
 class AssumptionMap:
     """Relative change of each of ``quantities`` by ``assumption``, (quantities, *axes), NaN without answer.
 
-    uncertainty : of the change.   seconds : of the processor.
+    uncertainty : of the change.   seconds : of the processor.   source : hash of the code.
     """
 
     assumption: str
@@ -134,6 +134,7 @@ class AssumptionMap:
     commit: str | None
     machine: str
     versions: dict[str, str]
+    source: str = ""
 
     def at(self, problem: CoatedContact) -> tuple[Change, Change]:
         """Change with uncertainty at ``problem``, that of the interpolation included; None where it has none.
@@ -187,25 +188,6 @@ class AssumptionMap:
             return float(axis.values[0] * (level / size[0]) ** (1 / axis.rates[quantity]))
         share = np.log(level / size[i - 1]) / np.log(size[i] / size[i - 1])
         return float(axis.values[i - 1] * (axis.values[i] / axis.values[i - 1]) ** share)
-
-    def plane(self, at: Mapping[str, float]) -> tuple[Array, Array, Array]:
-        """Thicknesses, ratios and changes (quantities, ratios, thicknesses) with the others ``at`` nodes.
-
-        Linear between the nodes, six points a step of either axis.
-        """
-        picked = [
-            slice(None) if axis.name not in at else axis.values.index(at[axis.name]) for axis in self.axes
-        ]
-        table = self.change[(slice(None), *picked)]
-        by_name = {axis.name: axis.nodes for axis in self.axes}
-        refined = []
-        for along, name in ((2, "thickness"), (1, "ratio")):
-            nodes = by_name[name]
-            x = np.interp(np.arange(6 * nodes.size - 5) / 6, np.arange(nodes.size), nodes)
-            table = np.apply_along_axis(partial(np.interp, x, nodes), along, table)
-            refined.append(x)
-        x, y = refined
-        return x, y, table
 
     def _at_place(self, place: Place) -> tuple[Array, Array]:
         frictionless = next((axis.values == (0.0,) for axis in self.axes if axis.name == "friction"), False)
@@ -264,20 +246,20 @@ def interpolated(
     value around; it vanishes at a node.
     below : axes whose first node stands for smaller values, with the step to the second as error.
     """
-    full = [_window(axis.nodes, x, most) for axis, x in zip(axes, positions, strict=True)]
+    along = list(zip(axes, positions, strict=True))
+    full = [_window(axis.nodes, x, most) for axis, x in along]
+    near = [_window(axis.nodes, x, 2) for axis, x in along]
     value, error = _contracted(table, full), np.zeros(table.shape[0])
-
-    def distance(j: int, weights: Weights) -> Array:
-        return np.abs(_contracted(table, [*full[:j], weights, *full[j + 1 :]]) - value)
-
-    for j, (axis, x) in enumerate(zip(axes, positions, strict=True)):
-        if below[j] and axis.nodes.size > 1:
-            error += distance(j, {1: 1.0})
-            continue
-        apart = [SAFETY * distance(j, less) for less in _fewer(axis.nodes, x, most)]
-        error += np.max([np.zeros_like(error), *apart], axis=0)
+    for j, (axis, x) in enumerate(along):
+        nodes, chosen, factor = axis.nodes, list(full[j]), SAFETY
+        fewer = [[i for i in chosen if i != end] for end in (chosen[0], chosen[-1]) if end not in near[j]]
+        if len(chosen) == 2:
+            fewer = [[min(chosen, key=lambda i: abs(nodes[i] - x))]]
+        if below[j] and nodes.size > 1:
+            fewer, factor = [[1]], 1.0
+        found = (_contracted(table, [*full[:j], _lagrange(nodes, x, some), *full[j + 1 :]]) for some in fewer)
+        error += np.max([np.zeros_like(error), *(factor * np.abs(one - value) for one in found)], axis=0)
     # a kink, as of a peak that moves off the axis, may escape the polynomials
-    near = [_window(axis.nodes, x, 2) for axis, x in zip(axes, positions, strict=True)]
     cell = table[np.ix_(range(table.shape[0]), *(list(weights) for weights in near))]
     between = max((4 * prod(w.values()) for w in near if len(w) == 2), default=0.0)
     return value, error + KINK * between * np.abs(cell).max(axis=tuple(range(1, cell.ndim)))
@@ -300,31 +282,11 @@ def _lagrange(nodes: Array, x: float, chosen: Sequence[int]) -> Weights:
     }
 
 
-def _cell(nodes: Array, x: float) -> tuple[int, int]:
-    """The nodes on both sides of ``x``; of an axis of one node twice this."""
-    right = int(np.clip(np.searchsorted(nodes, x), min(1, nodes.size - 1), nodes.size - 1))
-    return max(right - 1, 0), right
-
-
-def _chosen(nodes: Array, x: float, most: int) -> list[int]:
-    left, right = _cell(nodes, x)
-    if most == 2:
-        return sorted({left, right})
-    first = int(np.clip(left - 1, 0, max(nodes.size - most, 0)))
-    return list(range(first, min(first + most, nodes.size)))
-
-
 def _window(nodes: Array, x: float, most: int) -> Weights:
-    return _lagrange(nodes, x, _chosen(nodes, x, most))
-
-
-def _fewer(nodes: Array, x: float, most: int) -> list[Weights]:
-    """Weights by one node less than ``_window``, those beside ``x`` kept; the nearer one of two."""
-    chosen, cell = _chosen(nodes, x, most), _cell(nodes, x)
-    if len(chosen) == 2:
-        return [{min(chosen, key=lambda i: abs(nodes[i] - x)): 1.0}]
-    ends = [end for end in (chosen[0], chosen[-1]) if end not in cell]
-    return [_lagrange(nodes, x, [i for i in chosen if i != end]) for end in ends]
+    """Weights of the polynomial through the ``most`` nodes around ``x``, or through all there are."""
+    right = int(np.clip(np.searchsorted(nodes, x), min(1, nodes.size - 1), nodes.size - 1))
+    first = int(np.clip(right - most // 2, 0, max(nodes.size - most, 0)))
+    return _lagrange(nodes, x, range(first, min(first + most, nodes.size)))
 
 
 _FILE = RecordFile(AssumptionMaps, "assumptions.json", (SCHEMA,), "maps of the assumptions", "make it again")

@@ -53,14 +53,22 @@ class Imports:
         return tuple(sorted({module.partition(".")[0] for module in self.modules}))
 
     @property
+    def wrong(self) -> tuple[str, ...]:
+        """Messages on all that is forbidden or out of sight."""
+        return self.forbidden + self.hidden
+
+    @property
     def passed(self) -> bool:
         """True where nothing forbidden is imported, nothing out of sight."""
-        return not (self.forbidden or self.hidden)
+        return not self.wrong
 
 
 @dataclass(frozen=True)
 class CodeRecord:
-    """Orders on manufactured solutions; imports of both methods, then of the references; provenance."""
+    """Orders on manufactured solutions; imports of both methods, then of the references; provenance.
+
+    source : hash of the code.
+    """
 
     orders: tuple[DesignOrder, ...]
     parts: tuple[Imports, ...]
@@ -69,6 +77,7 @@ class CodeRecord:
     commit: str | None
     machine: str
     versions: dict[str, str]
+    source: str = ""
 
 
 def shared(first: Imports, second: Imports) -> tuple[str, ...]:

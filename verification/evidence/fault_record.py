@@ -1,5 +1,6 @@
 """Record of all trials of planted faults: detections, score, file."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
@@ -38,6 +39,7 @@ COLUMNS = {
     "manifest": "less that is judged: points, lines, invariants, or a wider cap or scale",
     "baseline": "numbers that changed; counted only where no other check can detect the fault",
 }
+COMPARISONS = tuple(name for name in COLUMNS if name.startswith(("bare", "coated")))
 SMALLEST_CHANGE = 1e-12  # of its scale; a smaller change is rounding
 EQUIVALENT_CHANGE = 1e-6  # of its scale; below the uncertainty that a method states, and below every cap
 
@@ -100,11 +102,17 @@ class FaultRow:
     def caught(self) -> bool:
         return self.catch in CAUGHT
 
-    @property
-    def compared(self) -> bool:
-        """True where a comparison of sources reports the fault."""
-        found = [tally for name, tally in self.columns.items() if name.startswith(("bare", "coated"))]
+    def seen_in(self, columns: Iterable[str] = COMPARISONS) -> bool:
+        """Whether a check of ``columns``, by default a comparison of sources, reports the fault."""
+        found = [self.columns[name] for name in columns if name in self.columns]
         return any(tally.disagree or tally.inconclusive for tally in found)
+
+    @property
+    def only_coated(self) -> bool:
+        """Whether every comparison of uncoated cases passes and some of coated ones do not."""
+        bare = [name for name in self.columns if name.startswith("bare")]
+        passed = not any(self.columns[name].no_result for name in bare) and not self.seen_in(bare)
+        return bool(bare) and passed and self.seen_in()
 
 
 @dataclass(frozen=True)
@@ -113,6 +121,7 @@ class Record:
 
     controls : trials in which nothing was planted.   failing_clean : checks that do not pass without a fault
     either, so that no trial counts them.   seconds : elapsed; core_seconds : of all trials.
+    source : hash of the code.
     """
 
     rows: tuple[FaultRow, ...]
@@ -124,6 +133,7 @@ class Record:
     machine: str
     versions: dict[str, str]
     failing_clean: tuple[str, ...] = ()
+    source: str = ""
 
     @property
     def caught(self) -> int:
@@ -160,7 +170,7 @@ class Record:
             row
             for row in self.rows
             if not (row.change > SMALLEST_CHANGE or row.failure or row.reason)
-            and (row.catch is Catch.SURVIVED or row.compared)
+            and (row.catch is Catch.SURVIVED or row.seen_in())
         )
 
     @property

@@ -1,8 +1,9 @@
 """What notices a fault of the semi-analytical method first, from a comparison down to the unit tests."""
 
+from collections.abc import Iterable
 from enum import StrEnum
 
-from verification.evidence.fault_record import COLUMNS, SMALLEST_CHANGE, FaultRow, Record
+from verification.evidence.fault_record import COMPARISONS, SMALLEST_CHANGE, FaultRow, Record
 
 
 class Noticed(StrEnum):
@@ -21,7 +22,7 @@ class Noticed(StrEnum):
 
 COUNTED = (Noticed.COMPARISON, Noticed.INVARIANT, Noticed.STUDY)
 _NOTICED = {
-    Noticed.COMPARISON: tuple(name for name in COLUMNS if name.startswith(("bare", "coated"))),
+    Noticed.COMPARISON: COMPARISONS,
     Noticed.INVARIANT: ("invariants",),
     Noticed.STUDY: ("studies",),
     Noticed.HARNESS: ("published", "self-tests", "manifest"),
@@ -33,8 +34,7 @@ def noticed(row: FaultRow) -> Noticed:
     if row.failure:
         return Noticed.NOT_TRIED
     for kind, columns in _NOTICED.items():
-        found = [row.columns[name] for name in columns if name in row.columns]
-        if any(tally.disagree or tally.inconclusive for tally in found):
+        if row.seen_in(columns):
             return kind
     if any(tally.no_result for tally in row.columns.values()):
         return Noticed.STOPPED
@@ -49,24 +49,20 @@ def unused(row: FaultRow) -> bool:
     return not row.failure and row.change <= SMALLEST_CHANGE and noticed(row) is Noticed.NOTHING
 
 
-def of_method(record: Record) -> tuple[FaultRow, ...]:
-    """The faults in the semi-analytical method."""
-    return tuple(row for row in record.rows if row.where == "semianalytic")
+def by_place(record: Record) -> dict[str, list[FaultRow]]:
+    """Faults by what they are in: each method, the references, the harness; none without faults."""
+    names = {
+        "semianalytic": "semi-analytical method",
+        "fem_reference": "finite elements",
+        "harness": "harness",
+    }
+    found: dict[str, list[FaultRow]] = {name: [] for name in (*names.values(), "references")}
+    for row in record.rows:
+        found[names.get(row.where, "references")].append(row)
+    return {name: rows for name, rows in found.items() if rows}
 
 
-def noticed_by(record: Record, *kinds: Noticed) -> int:
-    """Faults of the method that checks of these ``kinds`` notice first."""
-    return sum(noticed(row) in kinds for row in of_method(record))
-
-
-def method_score(record: Record) -> tuple[int, int]:
-    """Faults of the method that a counted kind notices, of all tried but the harmless ones."""
-    apart = noticed_by(record, Noticed.EQUIVALENT, Noticed.NOT_TRIED)
-    return noticed_by(record, *COUNTED), len(of_method(record)) - apart
-
-
-def kinds(record: Record) -> str:
-    """Each counted kind with the faults that it notices first, and the harmless faults."""
-    parts = [f"{noticed_by(record, kind)} by {kind}" for kind in COUNTED]
-    apart = noticed_by(record, Noticed.EQUIVALENT)
-    return ", ".join(parts) + (f"; {apart} harmless apart" if apart else "")
+def score(rows: Iterable[FaultRow]) -> tuple[int, int]:
+    """Faults that a counted kind notices, of all that were tried but the harmless ones."""
+    real = [kind for kind in map(noticed, rows) if kind not in (Noticed.EQUIVALENT, Noticed.NOT_TRIED)]
+    return sum(kind in COUNTED for kind in real), len(real)

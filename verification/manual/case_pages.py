@@ -42,6 +42,12 @@ that were recomputed from formulas are compared and not counted either.
 """
 
 
+WORST = (
+    "The largest difference of each pair of sources on all lines, over the scale of the comparison, with the "
+    "largest $U$ on that line:"
+)
+
+
 def contact_pages() -> Iterator[tuple[str, str | bytes]]:
     """Path with content of the page of every contact case, then their list."""
     for name in default_cases():
@@ -94,38 +100,28 @@ def _worst_table(result: CaseResult) -> str:
     pairs = list(dict.fromkeys(claim.between for claim, _ in result.verdicts))
     rows = []
     for name in dict.fromkeys(claim.quantity for claim, _ in result.verdicts):
-        found = [pair for pair in result.verdicts if pair[0].quantity == name]
+        found = [(claim, verdict) for claim, verdict in result.verdicts if claim.quantity == name]
         cells: list[str] = []
-        for between in pairs:
-            mine = [verdict for claim, verdict in found if claim.between == between]
+        for pair in pairs:
+            mine = [verdict for claim, verdict in found if claim.between == pair]
             worst = max(mine, key=lambda verdict: verdict.difference or 0.0, default=None)
             cells += ["", ""] if worst is None else map(scientific, (worst.difference, worst.uncertainty))
         rows.append([symbol(name), *cells, scientific(min(claim.cap for claim, _ in found), 1)])
     heads = [head for pair in pairs for head in (pair_label(pair), "$U$")]
-    return (
-        "The largest difference of each pair of sources on all lines, over the scale of the comparison, with "
-        f"the largest $U$ on that line:\n\n{table(['quantity', *heads, 'cap'], rows, 1)}"
-    )
+    return f"{WORST}\n\n{table(['quantity', *heads, 'cap'], rows, 1)}"
 
 
 def _published_page(case: PublishedCase) -> str:
+    head = ["column", "quantity", "line", "values", "counted", "departures", "largest, over scale", "seen"]
     rows = []
     for item in case.columns:
         departed = int(np.count_nonzero(item.departure))
-        rows.append(
-            [
-                text(item.column),
-                symbol(item.profile.quantity),
-                text(item.profile.line.rsplit(", ", 2)[0]),
-                str(len(item.text)),
-                str(int(item.counted.sum())),
-                str(departed),
-                scientific(float(np.abs(item.departure).max()) / item.scale) if departed else "",
-                SEEN.get(item.seen, item.seen),
-            ]
-        )
-    head = ["column", "quantity", "line", "values", "counted", "departures", "largest, over scale", "seen"]
-    tables = [
+        largest = scientific(float(np.abs(item.departure).max()) / item.scale) if departed else ""
+        line = text(item.profile.line.rsplit(", ", 2)[0])
+        numbers = map(str, (len(item.text), int(item.counted.sum()), departed))
+        seen = SEEN.get(item.seen, item.seen)
+        rows.append([text(item.column), symbol(item.profile.quantity), line, *numbers, largest, seen])
+    files = [
         f"- `{entry['file']}`, {SEEN.get(entry['seen'], entry['seen'])}: {text(entry['read'])}."
         for entry in case.citation["tables"]
     ]
@@ -138,7 +134,7 @@ def _published_page(case: PublishedCase) -> str:
         "## Problem",
         *_problem(result),
         "## Tables",
-        "\n".join(dict.fromkeys(tables)),
+        "\n".join(dict.fromkeys(files)),
         table(head, rows, 3),
         "## Results",
         _worst_table(result),

@@ -128,7 +128,7 @@ class Panel:
 
     title: str
     figure: Markup
-    note: str
+    note: str = ""
     css: str = ""
 
 

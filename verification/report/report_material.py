@@ -15,39 +15,25 @@ from verification.credibility.accuracy_study import AccuracyStudy
 from verification.credibility.model_error import ModelError, judged_quantities, model_error
 from verification.credibility.self_tests import SelfTest
 from verification.desk.layer_limits import Designed
-from verification.evidence import alarm_record, code_record, enclosure_record
+from verification.evidence import alarm_record, code_record, enclosure_record, fault_record
 from verification.evidence.alarm_record import AlarmRecord
 from verification.evidence.assumption_maps import AssumptionMaps, read_maps
 from verification.evidence.code_record import CodeRecord, DesignOrder, Imports
 from verification.evidence.enclosure_record import EnclosureRecord
-from verification.evidence.fault_record import Record, read_record
+from verification.evidence.fault_record import Record
+from verification.evidence.judged_source import is_older
 from verification.problem.coated_contact import CoatedContact
 from verification.regression.baseline_change import Regression
 from verification.report.tables.case_lookup import slug
 from verification.running.case_result import CaseResult, RunInfo, from_json, to_json
 from verification.running.checked_files import MAX_BYTES, StoreError, read_bounded, read_checked
 from verification.running.json_records import decode
-from verification.running.provenance import changed_since, machine
+from verification.running.provenance import machine
 from verification.running.stored_fields import read_planes
 from verification.sampling.stress_plane import Plane
+from verification.validation import validation_page
 
 T = TypeVar("T")
-_METHODS = ("semianalytic", "fem_reference", "verification/sources")
-_HARNESS = ("verification/judging", "verification/sampling")
-# The code that each record judges.
-JUDGED = {
-    "code": _METHODS,
-    "faults": (*_METHODS, *_HARNESS, "tests/tools/faults_planted"),
-    "alarms": (*_METHODS, *_HARNESS),
-    "enclosures": ("tests/tools/enclosures_made", "verification/sources/references"),
-    "maps": ("verification/sources/assumptions",),
-}
-
-
-def made_with(maps: AssumptionMaps) -> tuple[str, str | None]:
-    """Date and commit of the oldest map."""
-    oldest = min(maps.maps, key=lambda one: one.started)
-    return oldest.started, oldest.commit
 
 
 @dataclass(frozen=True)
@@ -58,7 +44,7 @@ class Evidence:
     accuracy : errors of the methods over resolution.
     baseline : the change of each number since the baseline.
     maps : what the assumptions of the model cost.   models : the same of each case, by its name.
-    older : names of the records that were made before the code they judge changed, see ``JUDGED``.
+    older : names of the records that judge another source than the present one.
     beyond : by case, a line for each assumption that costs too much of what the case judges.
     designed : by case, the largest stresses with the residual stresses and limits that it states.
     """
@@ -109,7 +95,7 @@ def gather(
 
     contacts : the contacts of the run by the name of their case, of which the error of the model is found.
     """
-    found, failures = contacts or {}, list[str]()
+    known, failures = contacts or {}, list[str]()
 
     def attempt(what: str, measure: Callable[[], T], otherwise: T) -> T:
         try:
@@ -119,35 +105,30 @@ def gather(
             failures.append(" ".join(message.split())[:300])
             return otherwise
 
-    enclosures = attempt("enclosures", lambda: enclosure_record.read_record(records), None)
-    maps = attempt("maps of the assumptions", lambda: read_maps(records), None)
-    models = {
-        name: attempt(f"error of the model, {name}", partial(model_error, one.problem, maps), ModelError(()))
-        for name, one in found.items()
+    readers: dict[str, Callable[[Path], Any]] = {
+        "code": code_record.read_record,
+        "faults": fault_record.read_record,
+        "alarms": alarm_record.read_record,
+        "enclosures": enclosure_record.read_record,
+        "maps": read_maps,
     }
-    code = attempt("checks of the code", lambda: code_record.read_record(records), None)
-    faults = attempt("planted faults", lambda: read_record(records), None)
-    alarms = attempt("false alarms", lambda: alarm_record.read_record(records), None)
-    made = {
-        "code": code.commit if code else None,
-        "faults": faults.commit if faults else None,
-        "alarms": alarms.commit if alarms else None,
-        "enclosures": enclosures.commit if enclosures else None,
-        "maps": made_with(maps)[1] if maps and maps.maps else None,
+    found = {name: attempt(name, partial(read, records), None) for name, read in readers.items()}
+    dated = {**found, "validation": validation_page.shipped()}
+    models = {
+        name: attempt(
+            f"error of the model, {name}", partial(model_error, one.problem, found["maps"]), ModelError(())
+        )
+        for name, one in known.items()
     }
     return Evidence(
-        code,
-        faults,
-        alarms,
-        tuple(failures),
-        enclosures=enclosures,
+        **found,
+        failures=tuple(failures),
         self_tests=tuple(self_tests),
-        maps=maps,
-        older=tuple(name for name, commit in made.items() if changed_since(commit, JUDGED[name])),
+        older=tuple(name for name, made in dated.items() if made is not None and is_older(name, made)),
         models=models,
         beyond={
             name: models[name].warnings(judged_quantities(one.quantities), one.warnings)
-            for name, one in found.items()
+            for name, one in known.items()
         },
     )
 

@@ -21,7 +21,6 @@ from verification.report.credibility import credibility_statement, detection_sec
 from verification.report.report_material import Material
 from verification.report.sections import (
     accuracy_section,
-    family_section,
     first_page,
     invariants_section,
     overview_section,
@@ -54,11 +53,7 @@ def _sections(material: Material) -> list[tuple[str, list[Section]]]:
     contacts, published, anchors = material.contacts, material.published, material.anchors
     found, study, faults = material.evidence, material.evidence.accuracy, material.evidence.faults
     coverage = accuracy_section.coverage_table(contacts)
-    results = (
-        overview_section.section(material),
-        published_section.section(published, anchors),
-        family_section.section(contacts),
-    )
+    results = (overview_section.section(material), published_section.section(published, anchors))
     evidence = (
         joined(
             "credibility",

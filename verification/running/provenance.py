@@ -61,17 +61,6 @@ def commit(here: Path = ROOT) -> str | None:
         return None
 
 
-def changed_since(made: str | None, places: Iterable[str], here: Path = ROOT) -> bool:
-    """Whether source in ``places`` is newer than the commit ``made``; False where that cannot be known."""
-    if not made or not (here / ".git").exists():
-        return False
-    words = ["git", "-C", str(here), "diff", "--quiet", made.removesuffix("+"), "--", *places]
-    try:
-        return subprocess.run(words, capture_output=True, timeout=10).returncode == 1
-    except (OSError, subprocess.SubprocessError):
-        return False
-
-
 @cache
 def fingerprint(modules: tuple[str, ...] = CODE, packages: tuple[str, ...] = ("python", *PACKAGES)) -> str:
     """SHA-256 over the source of ``modules`` and the versions of ``packages``.

@@ -111,12 +111,13 @@ class Validated:
 
 @dataclass(frozen=True)
 class ValidationRecord:
-    """All data sets compared, with commit, date and seconds of processor time."""
+    """All data sets compared, with commit, date, seconds of processor time, hash of the code."""
 
     sets: tuple[Validated, ...]
     started: str
     commit: str | None
     seconds: float
+    source: str = ""
 
 
 RECORD = RecordFile(

@@ -24,6 +24,7 @@ from verification.evidence.assumption_maps import (
     read_maps,
     write_maps,
 )
+from verification.evidence.judged_source import source_hash
 from verification.running.case_result import RunInfo
 from verification.sources.assumptions.contact_change import Change
 
@@ -118,4 +119,5 @@ def assembled(assumption: str, measured: Sequence[Measured], info: RunInfo) -> A
         info.commit,
         info.machine,
         dict(info.versions),
+        source_hash("maps"),
     )

@@ -10,6 +10,7 @@ from verification.commands.common.shared_options import Flag
 from verification.commands.common.task_progress import run_info
 from verification.commands.common.terminal import named_table, print_out
 from verification.evidence.code_record import CodeRecord, write_record
+from verification.evidence.judged_source import source_hash
 
 
 def code(*, record: Flag = False) -> int:
@@ -24,7 +25,8 @@ def code(*, record: Flag = False) -> int:
     orders, read = design_orders(), parts()
     info = run_info("tests/tools code", started, 1)
     seconds = round(time.process_time() - began, 1)
-    found = CodeRecord(orders, read, info.started, seconds, info.commit, info.machine, dict(info.versions))
+    made = info.started, seconds, info.commit, info.machine, dict(info.versions)
+    found = CodeRecord(orders, read, *made, source_hash("code"))
     table = named_table("elements of order", "harmonic", "order of u", "order of its gradient")
     for one in orders:
         table.add_row(str(one.order), str(one.harmonic), f"{one.displacement:.2f}", f"{one.gradient:.2f}")

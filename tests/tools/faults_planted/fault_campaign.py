@@ -20,6 +20,7 @@ from verification.evidence.fault_record import (
     Record,
     Tally,
 )
+from verification.evidence.judged_source import source_hash
 from verification.judging.verdict import Outcome
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.checked_files import StoreError, read_checked, write_checked
@@ -90,6 +91,7 @@ def record_of(trials: Sequence[Trial], info: RunInfo) -> Record:
         machine=f"{info.machine}, {info.jobs} jobs",
         versions=dict(info.versions),
         failing_clean=tuple(sorted({message for trial in trials for message in trial.failing_clean})),
+        source=source_hash("faults"),
     )
 
 

@@ -101,7 +101,7 @@ def examiner(tmp_path_factory):
 # A change of verification itself is no fault of a guest. A guest is only compared: faults that inside no
 # comparison of sources reports, but an invariant, a study or the baseline, are left out; so are faults of
 # contacts that are no discs, which no guest is asked for.
-NOT_COMPARED = {row.name for row in read_record(RECORDS).rows if not row.compared}
+NOT_COMPARED = {row.name for row in read_record(RECORDS).rows if not row.seen_in()}
 OF_METHODS = [
     fault
     for fault in FAULTS.values()

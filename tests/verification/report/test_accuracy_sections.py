@@ -5,7 +5,7 @@ from dataclasses import replace
 
 from html_document import Document
 from synthetic_results import INFO
-from synthetic_study import conversion, elements, study
+from synthetic_study import elements, study
 
 from verification.credibility.accuracy_study import failed
 from verification.credibility.refinement_studies import QUANTITIES
@@ -43,5 +43,3 @@ def test_part_that_is_missing_leaves_the_others():
     bare = replace(whole.refinements[0], levels=(), failure="N = 33: no grid fits")
     for studies in ((bare,), (bare, *whole.refinements[1:]), (bare, elements(3)), whole.refinements[1:2]):
         Document(render(material(replace(whole, refinements=studies))))
-    for conversions in ((), whole.conversions[:1], whole.conversions[1:2], (conversion("new", 4, 1, 1.0),)):
-        Document(render(material(replace(whole, conversions=conversions))))

@@ -6,14 +6,7 @@ import numpy as np
 import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 
-from verification.report.figures.field_pictures import (
-    EVERY,
-    THINNEST,
-    Frame,
-    pictures,
-    plane_difference,
-    rasterised,
-)
+from verification.report.figures.field_pictures import THINNEST, Frame, pictures, plane_difference, rasterised
 from verification.report.report_material import Material
 from verification.report.report_page import render
 from verification.sampling.stress_plane import Plane, sample_plane
@@ -59,20 +52,6 @@ def test_a_thin_layer_is_drawn_thick_enough_to_be_seen():
     raster = rasterised(x, depths, [np.full((6, 5), float(k)) for k in range(3)], frame)
     assert [(raster == k).mean() for k in range(2)] == pytest.approx([THINNEST] * 2, abs=0.02)
     assert not Frame(1.0, 1.0, (0.5,), 0.7).stretched
-
-
-def test_the_numbers_behind_are_those_of_the_plane(plane):
-    found = pictures(plane, *SCALES)
-    rows = found["csv"].splitlines()
-    heads = rows[0].split(",")
-    assert heads[:3] == ["layer", "x [m]", "z [m]"]
-    table = np.array([[float(v) for v in row.split(",")] for row in rows[1:]])
-    column = heads.index("sigma_xx [Pa] fem_reference")
-    sigma_xx = plane.stress["fem_reference"][0][0]
-    row = np.searchsorted(plane.depths[0], table[:, 2] * (1 - 1e-4))
-    place = np.abs(plane.x - table[:, 1, None]).argmin(axis=1)
-    np.testing.assert_allclose(table[:, column], sigma_xx[row, place], rtol=1e-4)
-    assert len(table) == plane.depths[0].size * plane.x[::EVERY].size > 250
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf])

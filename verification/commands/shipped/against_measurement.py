@@ -21,15 +21,16 @@ def validation(*, output: Output = Path("validation"), as_json: AsJson = False) 
     Args:
         output: Directory of validation.html and validation.json.
     """
+    from verification.evidence.judged_source import source_hash
     from verification.validation import validation_page as pages
     from verification.validation.measured_modulus import data_sets
     from verification.validation.validation_metric import RECORD, ValidationRecord, validated
 
     begun, used = datetime.now(), time.process_time()
     sets = tuple(validated(one, 0 if one.reason else ELEMENTS) for one in data_sets())
-    found = ValidationRecord(
-        sets, begun.isoformat(timespec="seconds"), commit(), round(time.process_time() - used, 1)
-    )
+    seconds = round(time.process_time() - used, 1)
+    started = begun.isoformat(timespec="seconds")
+    found = ValidationRecord(sets, started, commit(), seconds, source_hash("validation"))
     write_atomically(output / "validation.html", pages.page(found))
     stored = RECORD.write(output, found)
     if as_json:

@@ -9,20 +9,20 @@ import io
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import zip_longest
 from typing import Any
 
 import matplotlib as mpl
 import numpy as np
 from markupsafe import Markup
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from PIL import Image
 from scipy.interpolate import PchipInterpolator
 
 from verification.page.figures import ROLES, Box, Sheet, power_of_ten, round_ticks
 from verification.page.number_text import plain, scientific
-from verification.page.page_parts import Panel, written
+from verification.page.page_parts import Panel
 from verification.page.source_labels import source_label
 from verification.problem.array_types import Array
 from verification.problem.quantity import IN_PLANE, von_mises
@@ -35,7 +35,6 @@ WIDTH = 250.0  # of the raster
 PIXELS = 200  # along x
 COLOURS = 96
 THINNEST = 0.14  # of the height of a picture: what a layer has at least, to be seen
-NO_NUMBER = (128, 128, 128)
 LEVEL: Any = {"colors": "#ffffff", "alpha": 0.6, "linewidths": 0.7, "linestyles": "-"}
 
 
@@ -55,8 +54,7 @@ class Scale:
     def ticks(self) -> list[tuple[float, str]]:
         """Values with their labels."""
         if self.logarithmic:
-            values = [float(v) for v in range(round(self.low), round(self.high) + 1)]
-            return [(v, power_of_ten(v)) for v in values]
+            return [(float(n), power_of_ten(n)) for n in range(round(self.low), round(self.high) + 1)]
         return round_ticks(self.low, self.high, 6)
 
 
@@ -109,12 +107,10 @@ class Frame:
         return WIDTH * self.depth / (2 * self.half)
 
 
-def rasterised(
-    x: Array, depths: Sequence[Array], values: Sequence[Array], frame: Frame, smooth: bool = True
-) -> Array:
+def rasterised(x: Array, depths: Sequence[Array], values: Sequence[Array], frame: Frame) -> Array:
     """Values at the centres of the pixels, (rows, PIXELS), from those at ``x`` and the depths of each layer.
 
-    Linear along x, along z monotone cubics (``smooth``) or straight lines; never across an interface.
+    Linear along x, along z monotone cubics; never across an interface.
     """
     columns = frame.half * (2 * (np.arange(PIXELS) + 0.5) / PIXELS - 1)
     middles = (np.arange(frame.rows) + 0.5) / frame.rows
@@ -123,28 +119,23 @@ def rasterised(
     out = np.full((frame.rows, PIXELS), np.nan)
     for k, (z, value) in enumerate(zip(depths, values, strict=True)):
         mine = owner == k
-        if not mine.any() or not np.isfinite(value).all():
-            continue
-        at = np.clip(rows[mine], z[0], z[-1])
-        if smooth:
-            down = PchipInterpolator(z, value, axis=0)(at)
-        else:
-            down = np.stack([np.interp(at, z, column) for column in value.T], axis=1)
-        out[mine] = np.stack([np.interp(columns, x, row) for row in down])
+        if mine.any() and np.isfinite(value).all():
+            down = PchipInterpolator(z, value, axis=0)(np.clip(rows[mine], z[0], z[-1]))
+            out[mine] = np.stack([np.interp(columns, x, row) for row in down])
     return out
 
 
-def draw_field(raster: Array, frame: Frame, scale: Scale, *, label: str, lines: bool = True) -> Markup:
+def draw_field(raster: Array, frame: Frame, scale: Scale, *, label: str) -> Markup:
     """One field as inline SVG; lengths over a_h.
 
-    raster : as from ``rasterised``, NaN is drawn grey.   lines : draw level lines at the ticks of the scale.
+    raster : as from ``rasterised``, NaN is drawn grey.
     """
     raster_of, bar = (LEFT, TOP, WIDTH, frame.height), (LEFT + WIDTH + 8, TOP, 10.0, frame.height)
     figure = Sheet(LEFT + WIDTH + RIGHT, TOP + frame.height + BOTTOM)
     chart = figure.chart(raster_of, (-frame.half, frame.half), (1.0, 0.0))
     chart.ticks(round_ticks(-frame.half, frame.half, 5), _depths(frame), "x / a_h")
     chart.note(-frame.half, 0.0, "z / a_h", by=(-LEFT + 4, -2), colour="muted")
-    if lines:
+    if not scale.logarithmic:
         _level_lines(chart.axes, raster, frame, scale)
     for at in frame.shares[1:-1]:
         for colour, width in (("#ffffff", 2.4), ("#101418", 0.9)):
@@ -155,9 +146,10 @@ def draw_field(raster: Array, frame: Frame, scale: Scale, *, label: str, lines: 
     colours = figure.chart(bar, (0.0, 1.0), (scale.low, scale.high))
     for value, text in scale.ticks:
         colours.note(1.0, value, text, by=(4, 3.5))
-    under = _image(_address(coloured(raster, scale), ragged=not lines), raster_of)
-    under += _image(_address(_palette(scale)[::-1, None, :]), bar)
-    return figure.drawing(label, css="figure field", under=under)
+    levels = np.linspace(scale.high, scale.low, COLOURS)[:, None]
+    return figure.drawing(
+        label, css="figure field", under=_image(raster, scale, raster_of) + _image(levels, scale, bar)
+    )
 
 
 def _depths(frame: Frame) -> list[tuple[float, str]]:
@@ -172,34 +164,19 @@ def _depths(frame: Frame) -> list[tuple[float, str]]:
     return found
 
 
-def _image(address: str, box: Box) -> str:
+def _image(raster: Array, scale: Scale, box: Box) -> str:
+    """The values as an image that carries itself; a logarithmic one nearly so, at a quarter of the size."""
+    colours = mpl.colormaps[scale.name].resampled(COLOURS).with_extremes(bad="#808080")
+    shown = ScalarMappable(Normalize(scale.low, scale.high), colours)
+    pixels = shown.to_rgba(np.ma.masked_invalid(raster), bytes=True)[..., :3]
+    written = io.BytesIO()
+    quality: Any = {"lossless": not scale.logarithmic, "quality": 90 if scale.logarithmic else 100}
+    Image.fromarray(np.ascontiguousarray(pixels)).save(written, "WEBP", method=4, **quality)
     left, top, width, height = box
     return (
         f'<image x="{left:g}" y="{top:g}" width="{width:g}" height="{height:.1f}" preserveAspectRatio="none" '
-        f'href="{address}"/>'
+        f'href="data:image/webp;base64,{base64.b64encode(written.getvalue()).decode()}"/>'
     )
-
-
-def coloured(raster: Array, scale: Scale) -> NDArray[np.uint8]:
-    """Colours of ``raster``, shape of it + (3,); NaN is grey."""
-    span = scale.high - scale.low or 1.0
-    known = np.isfinite(raster)
-    share = np.where(known, (np.where(known, raster, 0.0) - scale.low) / span, 0.0)
-    index = np.clip((share * COLOURS).astype(int), 0, COLOURS - 1)
-    return np.where(known[..., None], _palette(scale)[index], np.array(NO_NUMBER, dtype=np.uint8))
-
-
-def _palette(scale: Scale) -> NDArray[np.uint8]:
-    colours = mpl.colormaps[scale.name]((np.arange(COLOURS) + 0.5) / COLOURS)
-    return np.round(255 * colours[:, :3]).astype(np.uint8)
-
-
-def _address(pixels: NDArray[np.uint8], ragged: bool = False) -> str:
-    """``pixels`` as an image that carries itself; a ``ragged`` one nearly so, at a quarter of the size."""
-    written = io.BytesIO()
-    picture = Image.fromarray(np.ascontiguousarray(pixels))
-    picture.save(written, "WEBP", method=4, lossless=not ragged, quality=90 if ragged else 100)
-    return f"data:image/webp;base64,{base64.b64encode(written.getvalue()).decode()}"
 
 
 def _level_lines(axes: Axes, raster: Array, frame: Frame, scale: Scale) -> None:
@@ -218,13 +195,12 @@ def _level_lines(axes: Axes, raster: Array, frame: Frame, scale: Scale) -> None:
 SHOWN = ("von_mises", "sigma_xx", "sigma_xz")
 TITLES = {"von_mises": "von Mises"}
 LOWEST, HIGHEST = -8.0, -3.0  # exponents of the difference over p_h; the same in all cases, to be compared
-EVERY = 3  # of the columns in the table of numbers
 
 
 def pictures(plane: Plane | None, a_h: float, p_h: float, case: str = "") -> dict[str, Any] | None:
     """Von Mises stress, sigma_xx and sigma_xz side by side, below them the differences of both methods.
 
-    With caption and the numbers as CSV; None where there is nothing to draw.
+    With caption; None where there is nothing to draw.
     """
     if plane is None or not plane.stress or not a_h > 0 or not p_h > 0:
         return None
@@ -234,9 +210,9 @@ def pictures(plane: Plane | None, a_h: float, p_h: float, case: str = "") -> dic
     frame = Frame(float(x[-1]), bottoms[-1], tuple(bottoms[:-1]), plane.radius / a_h)
 
     def panel(values: Sequence[Array], colours: Scale, title: str, label: str, note: str) -> Panel:
-        smooth = not colours.logarithmic
-        raster = rasterised(x, depths, values, frame, smooth=smooth)
-        return Panel(title, draw_field(raster, frame, colours, label=label, lines=smooth), note)
+        return Panel(
+            title, draw_field(rasterised(x, depths, values, frame), frame, colours, label=label), note
+        )
 
     fields, gaps = [], []
     for quantity in SHOWN:
@@ -260,24 +236,8 @@ def pictures(plane: Plane | None, a_h: float, p_h: float, case: str = "") -> dic
     return {
         "panels": [*fields, *gaps],
         "caption": stated("pictures", stretched=frame.stretched, both=len(sources) == 2),
-        "csv": plane_csv(plane),
         "failures": [(source_label(name), message) for name, message in plane.failures.items()],
     }
-
-
-def plane_csv(plane: Plane) -> str:
-    """Position, layer, stresses of every source at every third x; SI units in the column heads."""
-    x = plane.x[::EVERY]
-    columns = [["layer"], ["x [m]"], ["z [m]"]]
-    for k, z in enumerate(plane.depths):
-        columns[0] += [str(k)] * (z.size * x.size)
-        columns[1] += [f"{v:.5g}" for v in np.tile(x, z.size)]
-        columns[2] += [f"{v:.5g}" for v in np.repeat(z, x.size)]
-    for source, layers in plane.stress.items():
-        for name in (*IN_PLANE, "von_mises"):
-            values = np.concatenate([_quantity(sigma, name)[:, ::EVERY].ravel() for sigma in layers])
-            columns.append([f"{name} [Pa] {source}", *(f"{v:.5g}" for v in values)])
-    return written(list(zip_longest(*columns, fillvalue="")))
 
 
 def _quantity(sigma: Array, name: str) -> Array:

@@ -11,16 +11,10 @@ from verification.judging.verdict import Claim
 from verification.page.number_text import plain, scientific
 from verification.page.page_parts import Cell, Part, Section, Table, number, row, tally, words
 from verification.page.source_labels import source_label, symbol_of
-from verification.problem.line_profile import ON_BALL, Profile, coordinate_of
+from verification.problem.line_profile import ON_BALL, coordinate_of
 from verification.problem.quantity import PEAKS, QUANTITIES, SCALARS, SLOPES
 from verification.report.report_words import stated
-from verification.report.tables.case_lookup import (
-    case_cell,
-    contact_radius,
-    difference,
-    reference_source,
-    sources_with_profiles,
-)
+from verification.report.tables.case_lookup import case_cell, contact_radius, difference, reference_source
 from verification.running.case_result import CaseResult
 from verification.sources.source_registry import METHODS, REFERENCES
 
@@ -53,11 +47,14 @@ class Accuracy:
         return self.ratio is not None and self.ratio >= 1
 
     @property
+    def weakness(self) -> float:
+        """The ratio, by which the worst comes first; below all others without an uncertainty."""
+        return -1.0 if self.ratio is None else self.ratio
+
+    @property
     def css(self) -> str:
         """Class of a cell: by the ratio of the stated to the true error."""
-        if self.ratio is None or self.ratio < TOO_SMALL:
-            return "disagrees"
-        return "agrees" if self.ratio >= 1 else "inconclusive"
+        return "agrees" if self.covered else "disagrees" if self.weakness < TOO_SMALL else "inconclusive"
 
 
 def section(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str]) -> Section | None:
@@ -77,18 +74,19 @@ def accuracies(result: CaseResult) -> tuple[Accuracy, ...]:
     if exact not in REFERENCES:
         return ()
     claims = {(claim.quantity, claim.line): claim for claim, _ in result.verdicts}
-    found = (
-        _accuracy(result, claims[profile.quantity, profile.line], profile, exact)
-        for source in sources_with_profiles(result)
-        for profile in result.profiles
-        if profile.source == source in METHODS and (profile.quantity, profile.line) in claims
-    )
+    found = [
+        _accuracy(result, claim, source, exact)
+        for source in METHODS
+        for (quantity, line), claim in claims.items()
+        if (quantity, line, source) in result.profile_of
+    ]
     return tuple(item for item in found if item is not None)
 
 
-def _accuracy(result: CaseResult, claim: Claim, mine: Profile, exact: str) -> Accuracy | None:
-    found = difference(result, mine, result.profile_of.get((claim.quantity, claim.line, exact)))
-    if found is None:
+def _accuracy(result: CaseResult, claim: Claim, source: str, exact: str) -> Accuracy | None:
+    mine, theirs = (result.profile_of.get((claim.quantity, claim.line, one)) for one in (source, exact))
+    found = difference(result, mine, theirs)
+    if mine is None or found is None:
         return None
     error, uncertainty = found
     here = judged(result, claim, mine.position) & np.isfinite(error)
@@ -100,7 +98,7 @@ def _accuracy(result: CaseResult, claim: Claim, mine: Profile, exact: str) -> Ac
         ratio = np.where(error > 0, uncertainty / np.where(error > 0, error, 1.0), np.inf)
         smallest = float(np.min(np.where(np.isfinite(uncertainty), ratio, 0.0)[here]))
         estimate = float(uncertainty[worst])
-    return Accuracy(mine.source, claim.quantity, claim.line, float(error[worst]), estimate, smallest)
+    return Accuracy(source, claim.quantity, claim.line, float(error[worst]), estimate, smallest)
 
 
 def judged(result: CaseResult, claim: Claim, position: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -116,13 +114,12 @@ def _overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], 
     columns = [*SCALARS, *SLOPES, *PEAKS, *GROUPS]
     rows = []
     for result in results:
-        found = [item for item in accuracies(result) if item.source == source]
-        if not found:
-            continue
-        cells = [
-            _overview_cell([i for i in found if name in (i.quantity, _group_of(i.line))]) for name in columns
-        ]
-        rows.append(row(case_cell(result, f"#{anchors[result]}-comparisons"), *cells))
+        if found := [item for item in accuracies(result) if item.source == source]:
+            cells = [
+                _overview_cell([i for i in found if name in (i.quantity, _group_of(i.line))])
+                for name in columns
+            ]
+            rows.append(row(case_cell(result, f"#{anchors[result]}-comparisons"), *cells))
     return Table(
         f"Error of {source_label(source)} against the exact reference, then the uncertainty it states for "
         "the same point. Marked where the estimate is below the error (▼) or below half of it (▼▼).",
@@ -136,14 +133,13 @@ def _group_of(line: str) -> str:
     line = line.removeprefix(ON_BALL)
     if line.startswith("interface"):
         return "interfaces"
-    return "off plane" if line in ("oblique", "oblique surface") else line
+    return "off plane" if line.startswith("oblique") else line
 
 
 def _overview_cell(found: Sequence[Accuracy]) -> Cell:
     if not found:
         return Cell("", css="nothing")
-    worst = max(found, key=lambda item: item.error)
-    weakest = min(found, key=lambda item: -1.0 if item.ratio is None else item.ratio)
+    worst, weakest = max(found, key=lambda one: one.error), min(found, key=lambda one: one.weakness)
     mark = {"agrees": "", "inconclusive": " ▼", "disagrees": " ▼▼"}[weakest.css]
     note = f"largest error: {symbol_of(worst.quantity)} on {worst.line}"
     if weakest.ratio is not None:
@@ -155,34 +151,32 @@ def _overview_cell(found: Sequence[Accuracy]) -> Cell:
 def coverage_table(results: Sequence[CaseResult]) -> Table:
     """How often the uncertainty that a method states covers its true error, scalars and lines apart."""
     rows = []
-    scalar_names = ", ".join(QUANTITIES[name].symbol for name in SCALARS + SLOPES)
-    for source in METHODS:
-        for name, scalars in ((scalar_names, True), ("stresses, pressure, displacements", False)):
-            found = [
-                (result, item)
-                for result in results
-                for item in accuracies(result)
-                if item.source == source and (item.quantity in SCALARS + SLOPES) is scalars
-            ]
-            if not found:
-                continue
-            covered = sum(item.covered for _, item in found)
-            share = covered / len(found)
-            css = f"flag {'agrees' if share >= COVERED else 'disagrees'}"
-            case, worst = min(found, key=lambda pair: -1.0 if pair[1].ratio is None else pair[1].ratio)
-            ratios = [item.ratio for _, item in found if item.ratio is not None and np.isfinite(item.ratio)]
-            rows.append(
-                row(
-                    source_label(source),
-                    name,
-                    tally(covered, len(found)),
-                    Cell(f"{100 * share:.1f} %", share, css),
-                    number(1 / worst.ratio, partial(plain, digits=2)) if worst.ratio else "not stated",
-                    words(f"{symbol_of(worst.quantity)} on {worst.line}, {case.title}"),
-                    number(float(np.median(ratios)) if ratios else None, partial(plain, digits=3)),
-                    number(max(item.error for _, item in found)),
-                )
+    scalars = SCALARS + SLOPES
+    groups = {", ".join(QUANTITIES[name].symbol for name in scalars): True}
+    groups["stresses, pressure, displacements"] = False
+    known = [(result, item) for result in results for item in accuracies(result)]
+    for source, name in ((source, name) for source in METHODS for name in groups):
+        found = [
+            one for one in known if one[1].source == source and (one[1].quantity in scalars) is groups[name]
+        ]
+        if not found:
+            continue
+        covered = sum(item.covered for _, item in found)
+        share = covered / len(found)
+        case, worst = min(found, key=lambda one: one[1].weakness)
+        ratios = [item.ratio for _, item in found if item.ratio is not None and np.isfinite(item.ratio)]
+        rows.append(
+            row(
+                source_label(source),
+                name,
+                tally(covered, len(found)),
+                Cell(f"{100 * share:.1f} %", share, f"flag {'agrees' if share >= COVERED else 'disagrees'}"),
+                number(1 / worst.ratio, partial(plain, digits=2)) if worst.ratio else "not stated",
+                words(f"{symbol_of(worst.quantity)} on {worst.line}, {case.title}"),
+                number(float(np.median(ratios)) if ratios else None, partial(plain, digits=3)),
+                number(max(item.error for _, item in found)),
             )
+        )
     heads = ["method", "quantities", "covered", "share", "largest error / U", "there"]
     heads += ["median U / error", "largest error"]
     return Table(stated("coverage", share=f"{100 * COVERED:.0f}"), heads, rows, css="overview")

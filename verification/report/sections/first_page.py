@@ -12,12 +12,11 @@ from scipy.special import betaincinv
 from verification.cases.random_problems import MOST_COATINGS
 from verification.credibility.model_error import ASSUMPTIONS
 from verification.evidence.code_record import shared_functions
-from verification.evidence.first_notice import COUNTED, Noticed, noticed
+from verification.evidence.first_notice import by_place, score
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.number_text import plain, scientific
 from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of
 from verification.problem.line_profile import EDGE_LINE
-from verification.problem.point_answers import BALL
 from verification.problem.quantity import QUANTITIES, SCALARS, SLOPES
 from verification.regression.baseline_change import State, baseline_message
 from verification.regression.manifest import manifest_message
@@ -112,29 +111,30 @@ def _counted(results: Sequence[CaseResult], noun: str) -> str:
 def _largest(material: Material) -> list[str]:
     """The largest difference, that next to edges that are not round, and that in planes, unjudged."""
     found = [
-        (item.difference, item.claim, result)
+        (item.difference, item.claim, result.title)
         for result in material.results
         for item in items_of(result.verdicts)
         if item.difference is not None
     ]
-    found.sort(key=lambda one: one[0])
+    edge, away = ([one for one in found if (one[1].line == EDGE_LINE) is beside] for beside in (True, False))
     texts = []
-    if away := [one for one in found if one[1].line != EDGE_LINE]:
-        difference, claim, result = away[-1]
+    if away:
+        gap, claim, title = max(away, key=lambda one: one[0])
         texts.append(
-            f"The largest difference is {scientific(difference)} {_scale(claim)}: "
-            f"{_place(claim)}, {result.title}."
+            f"The largest difference is {scientific(gap)} {_scale(claim)}: {_place(claim)}, {title}."
         )
-    if edge := [one for one in found if one[1].line == EDGE_LINE]:
-        worst = f"{scientific(edge[-1][0])}, cap {edge[-1][1].cap:g}"
-        texts.append(f"Beside edges not round, in {len(edge)} comparisons: {worst}.")
+    if edge:
+        gap, claim, _ = max(edge, key=lambda one: one[0])
+        text = f"{scientific(gap)}, cap {claim.cap:g}"
+        texts.append(f"Beside edges not round, in {len(edge)} comparisons: {text}.")
     gaps = [
-        (plane_difference(material.planes[result.name], float(divisor(result, "sigma_xx", 0.0))), result.name)
+        (gap, result.name)
         for result in material.contacts
-        if result.name in material.planes
+        if (plane := material.planes.get(result.name)) is not None
+        and (gap := plane_difference(plane, float(divisor(result, "sigma_xx", 0.0)))) is not None
     ]
-    if known := [(gap, name) for gap, name in gaps if gap is not None]:
-        gap, name = max(known)
+    if gaps:
+        gap, name = max(gaps)
         texts.append(f"In the pictures of sigma_xx, which are not judged: {scientific(gap)} ({name}).")
     return texts
 
@@ -172,10 +172,7 @@ def chart(material: Material) -> dict[str, Any] | None:
         results.sort(key=_badness)
         own, others = results[:OWN_ROWS], results[OWN_ROWS:]
     rows = [_strip_row(result.title, anchors[result], axis, [result]) for result in own]
-    groups: dict[str, list[CaseResult]] = {}
-    for result in others:
-        groups.setdefault(_kind(result), []).append(result)
-    rows += [_strip_row(f"{len(some)} more: {kind}", "", axis, some) for kind, some in groups.items()]
+    rows += [_strip_row(f"{len(others)} more", "", axis, others)] if others else []
     return {"rows": rows, "scale": draw_axis(axis), "grouped": len(others)}
 
 
@@ -213,17 +210,6 @@ def _place(claim: Claim) -> str:
 def _badness(result: CaseResult) -> tuple[int, float]:
     largest = max((item.difference or 0.0 for item in items_of(result.verdicts)), default=0.0)
     return OUTCOMES[result.outcome].rank, -largest
-
-
-def _kind(result: CaseResult) -> str:
-    """The group of cases that one belongs to."""
-    if result.published:
-        return "published"
-    count = len(layers(result.problem)) - 1
-    parts = ["uncoated" if count < 1 else "one coating" if count == 1 else "several coatings"]
-    parts += ["elastic ball"] if layers(result.problem, BALL) else []
-    parts += ["sliding"] if result.problem.get("friction") else []
-    return ", ".join(parts)
 
 
 def _tallies(material: Material) -> list[tuple[OutcomeStyle, int]]:
@@ -350,46 +336,42 @@ def worth(material: Material) -> list[Worth]:
         if held:
             found.append(Worth(name, _share(held), href, all(held), note))
 
-    def recorded(name: str, value: str, href: str, record: Any, also: str = "") -> None:
-        key = href.removeprefix("#")
-        older = key in evidence.older
+    def recorded(name: str, good: int, total: int, href: str, record: Any, also: str = "") -> None:
+        older = href.removeprefix("#") in evidence.older
         dated = f"{record.started[:10]}, {(record.commit or 'no commit')[:8]}"
         note = f"{also}{dated}{', older than code' if older else ''}"
-        found.append(Worth(name, value, href, None, note, older))
+        found.append(Worth(name, f"{good} of {total}", href, None, note, older))
 
     known = [item for result in material.contacts for item in accuracies(result)]
     ratios = [item.ratio for item in known if item.ratio is not None and isfinite(item.ratio)]
     note = f"median U / error {plain(median(ratios), 2)}" if ratios else ""
     share("true error within U", [item.covered for item in known], "#accuracy", note)
     if alarms := evidence.alarms:
-        wrong = {one.case for one in alarms.false_alarms}
-        bound = betaincinv(len(wrong) + 1, alarms.problems - len(wrong), 0.95) if alarms.problems else 1.0
-        value = f"{len(wrong)} of {alarms.problems}"
+        wrong = len({one.case for one in alarms.false_alarms})
+        bound = betaincinv(wrong + 1, alarms.problems - wrong, 0.95) if alarms.problems else 1.0
         note = f"seed {alarms.seed}; below {plain(100 * bound, 2)} % at 95 %; "
-        recorded("random problems with a false alarm", value, "#alarms", alarms, note)
+        recorded("random problems with a false alarm", wrong, alarms.problems, "#alarms", alarms, note)
     if faults := evidence.faults:
-        for name in METHODS:
-            rows = [row for row in faults.rows if row.where == name]
-            real = [row for row in rows if noticed(row) not in (Noticed.EQUIVALENT, Noticed.NOT_TRIED)]
-            if real:
-                seen = sum(noticed(row) in COUNTED for row in real)
-                label = f"faults planted in the {SOURCES[name].label} method noticed"
-                label = label.replace("finite elements method", "finite elements")
-                recorded(label, f"{seen} of {len(real)}", "#faults", faults)
-        if faults.alarms:
-            silent = [row not in faults.alarms for row in faults.controls]
-            share("runs without a fault left alone", silent, "#faults")
+        for place, rows in by_place(faults).items():
+            # the harness judges: its faults show in its self-tests and in the manifest, not in a comparison
+            caught = sum(row.caught for row in rows), len(rows)
+            good, total = caught if place == "harness" else score(rows)
+            if total:
+                recorded(f"faults planted in the {place} noticed", good, total, "#faults", faults)
+        silent = [row not in faults.alarms for row in faults.controls]
+        share("runs without a fault left alone", silent if not all(silent) else (), "#faults")
     if measured := validation_page.shipped():
         compared = [one for one in measured.sets if not one.measured.reason]
         if compared:
             mean = max((one.mean for one in compared), key=abs)
             value = f"{100 * mean:+.1f} %".replace("-", "−")
+            older = "validation" in evidence.older
             note = f"u_val {plain(100 * float(compared[0].u_val.mean()), 2)} %; compliance alone"
-            found.append(Worth("computed less measured modulus", value, "#validation", None, note))
+            note += ", older than code" if older else ""
+            found.append(Worth("computed less measured modulus", value, "#validation", None, note, older))
     invariants = [one for result in material.results for one in result.invariants]
-    share(
-        "laws that every solution obeys", [one.outcome is Outcome.AGREES for one in invariants], "#invariants"
-    )
+    held = [one.outcome is Outcome.AGREES for one in invariants]
+    share("laws that every solution obeys", held, "#invariants")
     studies = evidence.accuracy.verdicts if evidence.accuracy is not None else ()
     held = [one.outcome is Outcome.AGREES for one in studies]
     share("parts of the method within limits", held, "#semi-analytical-accuracy")

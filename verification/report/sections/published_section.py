@@ -10,6 +10,7 @@ from verification.cases.published_table import RECOMPUTED
 from verification.page.number_text import plain, scientific
 from verification.page.page_parts import Cell, Part, Section, Table, number, outcome_cell, row, tally
 from verification.page.source_labels import row_css, source_label
+from verification.problem.array_types import Array
 from verification.problem.line_profile import Profile
 from verification.problem.quantity import QUANTITIES
 from verification.report.report_words import stated
@@ -33,13 +34,11 @@ def _overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str]) 
     sources = tuple(dict.fromkeys(s for result in results for s in _sources(result)))
     for result in results:
         tables = result.published["tables"]
+        seen, read = (dict.fromkeys(table[key] for table in tables) for key in ("seen", "read"))
         cells = [
             outcome_cell(result.outcome),
             number(result.published["year"], str),
-            Cell(
-                ", ".join(dict.fromkeys(table["seen"] for table in tables)),
-                note="; ".join(dict.fromkeys(table["read"] for table in tables)),
-            ),
+            Cell(", ".join(seen), note="; ".join(read)),
             *(number(count, str) for count in counts([result])),
         ]
         for source in sources:
@@ -96,17 +95,13 @@ def _sources(result: CaseResult) -> tuple[str, ...]:
 
 
 def _method_cells(result: CaseResult, method: str) -> list[Cell]:
-    met = total = 0
-    for item in result.published["columns"]:
-        if not any(method in c.between and c.line == item["line"] for c, _ in result.verdicts):
-            continue
-        gap, allowed = _gap(result, item, method)
-        total += len(item["text"])
-        if gap is not None and allowed is not None:
-            met += int((np.abs(gap - _listed(item)) <= allowed).sum())
-    numbers = [v.difference for c, v in result.verdicts if method in c.between and v.difference is not None]
-    css = "verdict agrees" if met == total else "verdict disagrees"
-    return [Cell(f"{met} of {total}", met, css), number(max(numbers, default=None))]
+    claimed = [(claim, verdict) for claim, verdict in result.verdicts if method in claim.between]
+    lines = {claim.line for claim, _ in claimed}
+    met = [_gaps(result, item, method)[2] for item in result.published["columns"] if item["line"] in lines]
+    good, total = (sum(map(count, met)) for count in (np.sum, len))
+    css = "verdict agrees" if good == total else "verdict disagrees"
+    largest = max((v.difference for _, v in claimed if v.difference is not None), default=None)
+    return [Cell(f"{good} of {total}", good, css), number(largest)]
 
 
 def _columns(result: CaseResult) -> dict[tuple[str, str, str], list[dict[str, Any]]]:
@@ -117,9 +112,18 @@ def _columns(result: CaseResult) -> dict[tuple[str, str, str], list[dict[str, An
     return columns
 
 
-def _listed(item: Mapping[str, Any]) -> np.ndarray:
-    """Listed departures [SI] of a column on a line."""
-    return np.array(item["departure"]) * item["to_si"]
+def _gaps(result: CaseResult, item: Mapping[str, Any], method: str) -> tuple[Array, Array, Array]:
+    """Method less published value, the sum of both uncertainties [SI], and where the value is met.
+
+    NaN where there is no number; a listed departure of the source is met with it.
+    """
+    mine, theirs = (_profile(result, item, source) for source in (method, PUBLISHED))
+    gap = allowed = np.full(len(item["text"]), np.nan)
+    if mine is not None and theirs is not None:
+        gap = mine.value - theirs.value
+        if mine.uncertainty is not None and theirs.uncertainty is not None:
+            allowed = mine.uncertainty + theirs.uncertainty
+    return gap, allowed, np.abs(gap - np.array(item["departure"]) * item["to_si"]) <= allowed
 
 
 def tables(result: CaseResult) -> list[tuple[str, Table]]:
@@ -135,55 +139,48 @@ def _table(result: CaseResult, items: Sequence[Mapping[str, Any]]) -> Table:
     rows = []
     for item in items:
         place = item["line"].split(f", {item['file'].removesuffix('.csv')}")[0]
-        methods = {
-            method: (_profile(result, item, method), *_gap(result, item, method)) for method in sources
-        }
         source = _profile(result, item, PUBLISHED)
+        stated_U = None if source is None else source.uncertainty
+        methods = [(_profile(result, item, method), *_gaps(result, item, method)) for method in sources]
         for n, text in enumerate(item["text"]):
-            uncertainty = None if source is None or source.uncertainty is None else source.uncertainty[n]
+            U = None if stated_U is None else float(stated_U[n])
             cells = [
                 number(item["position"][n], partial(plain, digits=6)),
                 Cell(text.replace("-", "−"), float(text)),
                 number(item["departure"][n] or None, partial(scientific, sign=True)),
-                Cell(_in(uncertainty, item), uncertainty),
+                Cell(_in(U, item), U),
             ]
-            met = []
-            for method in sources:
-                profile, gap, allowed = methods[method]
-                if method not in METHODS and profile is None:
-                    cells += [Cell("–")] * 3
-                elif profile is None or gap is None:
-                    cells += [Cell("no result", css="no-result"), Cell("–"), Cell("–")]
-                    met.append(False)
-                else:
-                    limit = None if allowed is None else float(allowed[n])
-                    cells += [
-                        number(float(profile.value[n]) / item["to_si"], partial(plain, digits=7)),
-                        Cell(_in(float(gap[n]), item, signed=True), abs(float(gap[n]))),
-                        Cell(_in(limit, item)),
-                    ]
-                    met.append(limit is not None and bool(abs(gap[n] - _listed(item)[n]) <= limit))
-            counted = item["counted"][n]
+            for profile, gap, allowed, _ in methods:
+                value = None if profile is None else float(profile.value[n]) / item["to_si"]
+                cells += [
+                    number(value, partial(plain, digits=7)),
+                    Cell(_in(float(gap[n]), item, signed=True), abs(float(gap[n]))),
+                    Cell(_in(float(allowed[n]), item)),
+                ]
             verdict = Cell("✗", css="verdict disagrees")
-            if all(met):
+            asked = [
+                ok[n]
+                for method, (profile, _, _, ok) in zip(sources, methods, strict=True)
+                if method in METHODS or profile is not None
+            ]
+            if all(asked):
                 verdict = Cell("✓", css="verdict agrees")
                 if item["departure"][n]:
                     verdict = Cell("departs, not counted", css="verdict inconclusive")
             label = ", ".join(filter(None, (place, item["labels"][n])))
             head = Cell(label, note=f"{item['file']}, line {item['rows'][n]}")
-            rows.append(row(head, *cells, verdict, css="" if counted else "inconclusive"))
+            rows.append(row(head, *cells, verdict, css="" if item["counted"][n] else "inconclusive"))
     quantity = QUANTITIES[first["quantity"]]
+    heads = [
+        "where",
+        f"{first['coordinate']} in {first['position_unit']}",
+        "published",
+        "departure",
+        "U of it",
+    ]
     return Table(
         stated("published_column", first=first, meaning=quantity.meaning or quantity.symbol),
-        [
-            "where",
-            f"{first['coordinate']} in {first['position_unit']}",
-            "published",
-            "departure",
-            "U of it",
-            *["value", "difference", "U of both"] * len(sources),
-            "met",
-        ],
+        [*heads, *["value", "difference", "U of both"] * len(sources), "met"],
         rows,
         [("", 5), *((source_label(source), 3) for source in sources), ("", 1)],
         "verdicts",
@@ -192,21 +189,9 @@ def _table(result: CaseResult, items: Sequence[Mapping[str, Any]]) -> Table:
 
 def _in(value: float | None, item: Mapping[str, Any], signed: bool = False) -> str:
     """A difference [SI] in the published unit; a signed one in its sign convention."""
-    if value is None:
+    if value is None or np.isnan(value):
         return "–"
     return scientific(value / item["to_si"] if signed else value / abs(item["to_si"]), sign=signed)
-
-
-def _gap(
-    result: CaseResult, item: Mapping[str, Any], method: str
-) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """Method less published value, and the sum of both uncertainties [SI]; None where one is missing."""
-    mine, theirs = _profile(result, item, method), _profile(result, item, PUBLISHED)
-    if mine is None or theirs is None:
-        return None, None
-    if mine.uncertainty is None or theirs.uncertainty is None:
-        return mine.value - theirs.value, None
-    return mine.value - theirs.value, mine.uncertainty + theirs.uncertainty
 
 
 def _profile(result: CaseResult, item: Mapping[str, Any], source: str) -> Profile | None:

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from verification.credibility.accuracy_study import CORRECTED, PLAIN, PROBLEM, STAIRCASE, AccuracyStudy
 from verification.credibility.refinement_studies import QUANTITIES, Refinement
 from verification.judging.invariants import Invariant
-from verification.judging.invariants.influence_error import ConversionError
 from verification.judging.outcome import Outcome
 from verification.page.number_text import seconds
 from verification.page.page_parts import Cell, Gallery, Part, Section, Table, number, row, table_of
@@ -37,13 +36,10 @@ def semianalytic_section(study: AccuracyStudy | None) -> Section | None:
     grids = [one for one in study.refinements if one.method == "semianalytic"]
     parts = [_judged(study.verdicts)] if study.verdicts else []
     if any(one.levels for one in grids):
-        text = stated("grids", problem=f"{PROBLEM[0].upper()}{PROBLEM[1:]}")
         caption = stated("grid_caption")
-        gallery = _refinement_gallery(grids, "N", (33, 49, 65, 97, 129, 257), caption)
-        parts.append(Part(text, [_refinement_table(grids, "patches per side")], gallery))
-    if study.conversions:
-        parts.append(Part("", [_conversion_table(study.conversions)], folded="Influence coefficients"))
-    failures = [f for f in study.failures if not f.startswith("fem_reference")]
+        gallery = _gallery(grids, "N", (33, 49, 65, 97, 129, 257), caption)
+        parts.append(Part(stated("grids", problem=PROBLEM), [_table(grids, "patches per side")], gallery))
+    failures = [one for one in study.failures if not one.startswith("fem_reference")]
     failures += [one.message for one in study.verdicts if one.outcome is Outcome.DISAGREES]
     return Section("semi-analytical-accuracy", "Semi-analytical accuracy", parts, tuple(failures))
 
@@ -55,74 +51,58 @@ def finite_element_section(study: AccuracyStudy | None) -> Section | None:
         return None
     parts = []
     if any(one.levels for one in elements):
-        caption = stated("mesh_caption")
         ticks = (50, 70, 100, 150, 200, 300)
-        gallery = _refinement_gallery(elements, "√(degrees of freedom)", ticks, caption)
-        parts = [Part("", [_refinement_table(elements, "mesh")], gallery)]
-    failures = tuple(f for f in study.failures if f.startswith("fem_reference"))
+        gallery = _gallery(elements, "√(degrees of freedom)", ticks, stated("mesh_caption"))
+        parts = [Part("", [_table(elements, "mesh")], gallery)]
+    failures = tuple(one for one in study.failures if one.startswith("fem_reference"))
     return Section("finite-element-accuracy", "Finite element accuracy", parts, failures)
 
 
 def _judged(found: Sequence[Invariant]) -> Part:
     """Each part of the method beside its limit, which counts for the exit code of the run."""
-    rows = []
-    for one in sorted(found, key=lambda one: OUTCOMES[one.outcome].rank):
-        style = OUTCOMES[one.outcome]
-        verdict = Cell(style.mark, one.share, f"verdict {style.css}")
-        rows.append(row(one.name, Cell(one.message, css="reason"), verdict, css=row_css(one.outcome)))
-    caption = "The parts of the method beside their limits."
     held = sum(one.outcome is Outcome.AGREES for one in found)
-    text = stated("judged_studies", held=held, total=len(found))
-    return Part(text, [Table(caption, ["part", "error", "verdict"], rows, css="verdicts")])
-
-
-def _conversion_table(found: Sequence[ConversionError]) -> Table:
-    return table_of(
-        stated("conversions"),
-        found,
+    table = table_of(
+        "The parts of the method beside their limits.",
+        sorted(found, key=lambda one: OUTCOMES[one.outcome].rank),
         [
-            ("conversion", lambda one: one.conversion),
-            ("aliases a side", lambda one: one.aliases),
-            ("domain / grid", lambda one: Cell(f"{one.enlarge or '–'}", float(one.enlarge))),
-            ("loaded patch", lambda one: one.error[0]),
-            ("next patch", lambda one: one.error[1]),
-            ("worst patch", lambda one: max(one.error)),
-            ("of the largest", lambda one: one.largest),
-            ("time", lambda one: number(one.seconds, seconds)),
+            ("part", lambda one: one.name),
+            ("error", lambda one: Cell(one.message, css="reason")),
+            (
+                "verdict",
+                lambda one: Cell(
+                    OUTCOMES[one.outcome].mark, one.share, f"verdict {OUTCOMES[one.outcome].css}"
+                ),
+            ),
         ],
+        css="verdicts",
+        row_css=lambda one: row_css(one.outcome),
     )
+    return Part(stated("judged_studies", held=held, total=len(found)), [table])
 
 
-def _refinement_gallery(
-    studies: Sequence[Refinement], coordinate: str, ticks: Sequence[float], caption: str
-) -> Gallery:
+def _gallery(studies: Sequence[Refinement], coordinate: str, ticks: Sequence[float], caption: str) -> Gallery:
     styles = [_SETTINGS.get((one.setting, one.solid == studies[0].solid), UNKNOWN) for one in studies]
-
-    def trail(one: Refinement, quantity: str, style: Style) -> Trail:
-        order = one.order(quantity)
-        return Trail(
-            tuple(level.resolution for level in one.levels),
-            tuple(level.errors[quantity] for level in one.levels),
-            style,
-            "–" if order is None else f"−{order:.1f}",
-        )
-
+    styled = list(zip(studies, styles, strict=True))
     plots = []
     for q in QUANTITIES:
         title = _TITLES.get(q, q)
-        label, note = (
-            f"error of {title} over {coordinate}, logarithmic",
-            f"error, {_SCALES.get(q, 'relative')}",
-        )
-        trails = [trail(one, q, style) for one, style in zip(studies, styles, strict=True) if one.levels]
-        plots.append(Plot(title, label, note, coordinate, ticks, trails))
-    legend = [
-        (swatch(style), f"{one.solid}: {one.setting}") for one, style in zip(studies, styles, strict=True)
-    ]
+        trails = [
+            Trail(
+                tuple(level.resolution for level in one.levels),
+                tuple(level.errors[q] for level in one.levels),
+                style,
+                "–" if (order := one.order(q)) is None else f"−{order:.1f}",
+            )
+            for one, style in styled
+            if one.levels
+        ]
+        label = f"error of {title} over {coordinate}, logarithmic"
+        plots.append(Plot(title, label, f"error, {_SCALES.get(q, 'relative')}", coordinate, ticks, trails))
+    legend = [(swatch(style), f"{one.solid}: {one.setting}") for one, style in styled]
     return Gallery(legend, panels(plots), caption)
 
 
-def _refinement_table(studies: Sequence[Refinement], level_name: str) -> Table:
+def _table(studies: Sequence[Refinement], level_name: str) -> Table:
     rows = []
     for one in studies:
         name = f"{one.solid}: {one.setting}"
@@ -130,7 +110,6 @@ def _refinement_table(studies: Sequence[Refinement], level_name: str) -> Table:
             row(name, level.name, *(level.errors[q] for q in QUANTITIES), number(level.seconds, seconds))
             for level in one.levels
         ]
-        orders = [one.order(q) for q in QUANTITIES]
-        cells = [Cell("–" if o is None else f"{o:.1f}", -1.0 if o is None else o) for o in orders]
-        rows.append(row(name, "observed order", *cells, "", css="order"))
+        orders = [number(one.order(q), "{:.1f}".format) for q in QUANTITIES]
+        rows.append(row(name, "observed order", *orders, "", css="order"))
     return Table(stated("refinement_table"), ["solid and setting", level_name, *QUANTITIES, "time"], rows)

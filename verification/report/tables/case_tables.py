@@ -1,5 +1,6 @@
 """The tables of one case: contact, verdicts, uncertainty budget, run times."""
 
+import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from math import isfinite, isinf
@@ -90,31 +91,32 @@ def _stated_columns(result: CaseResult, body: str, count: int) -> list[tuple[str
     stated = result.stated
     sublayers = [*(stated.get("layers", {}).get(body) or [1] * (count - 1)), 1]
     coating = [i for i, n in enumerate(sublayers) for _ in range(n)]  # that each layer belongs to
+    before, base = (f"{BALL}.", BALL) if body == BALL else ("", "substrate")
+    places = [f"{before}coatings.{i}" for i in coating[: count - 1]] + [base]
+    limits = stated.get("limits", {})
     names = stated.get("names", {}).get(body, ())
-    residual = [*stated.get("residual", {}).get(body, ()), 0.0]
-    before, columns = (f"{BALL}." if body == BALL else ""), list[tuple[str, Callable[[Any], Value]]]()
-
-    def limit(name: str) -> Callable[[Any], Value]:
-        def cell(at: Any) -> Value:
-            base = BALL if body == BALL else "substrate"
-            layer = base if at[0] == count else f"{before}coatings.{coating[at[0] - 1]}"
-            value = stated["limits"].get(f"{layer}.{name}")
-            return "" if value is None else Cell(engineering(value, "Pa"), value)
-
-        return cell
-
-    if any(names):
-        columns.append(("name", lambda at: names[coating[at[0] - 1]]))
-    if any(residual):
-        columns.append(
-            ("residual stress", lambda at: Cell(engineering(residual[at[0] - 1], "Pa"), residual[at[0] - 1]))
-        )
+    found: dict[str, list[Any]] = {
+        "name": [names[i] or "" for i in coating] if any(names) else [],
+        "residual stress": [*stated.get("residual", {}).get(body, ()), 0.0],
+    }
     for name in ("hardness", "yield_strength"):
-        if any(
-            key.endswith(name) and (body == BALL) == key.startswith(BALL) for key in stated.get("limits", {})
-        ):
-            columns.append((name.replace("_", " "), limit(name)))
-    return columns
+        found[name.replace("_", " ")] = [limits.get(f"{place}.{name}") for place in places]
+
+    def shown(values: list[Any], at: int) -> Value:
+        value = values[at - 1]
+        return (
+            value
+            if isinstance(value, str)
+            else ""
+            if value is None
+            else Cell(engineering(value, "Pa"), value)
+        )
+
+    return [
+        (head, lambda at, values=values: shown(values, at[0]))
+        for head, values in found.items()
+        if any(values)
+    ]
 
 
 def stress_table(result: CaseResult, found: Designed) -> Table:
@@ -248,22 +250,14 @@ def budget_table(result: CaseResult) -> Table:
             dominant = "dominant" if value == largest > 0 and len(parts) > 1 else ""
             found = scalar(result, quantity, source.source)
             size = abs(found[0]) if found else scale(result.problem, "p_h")
-            rows.append(
-                row(
-                    source_label(source.source),
-                    quantity,
-                    Cell(name, css=dominant),
-                    Cell(engineering(value, unit_of(quantity), 2), value),
-                    Cell(scientific(value / size if size else None), value),
-                    Cell("◀ dominates" if dominant else "", css="dominant"),
-                )
-            )
-    return Table(
-        "Uncertainty of each method by numerical parameter, from its own refinement; relative to the value, "
-        "to p_h for stresses.",
-        ["source", "quantity", "parameter", "uncertainty", "relative", ""],
-        rows,
-    )
+            cells = [
+                Cell(name, css=dominant),
+                Cell(engineering(value, unit_of(quantity), 2), value),
+                Cell(scientific(value / size if size else None), value),
+                Cell("◀ dominates" if dominant else "", css="dominant"),
+            ]
+            rows.append(row(source_label(source.source), quantity, *cells))
+    return Table(stated("budget"), ["source", "quantity", "parameter", "uncertainty", "relative", ""], rows)
 
 
 def diagnostics_table(sources: Iterable[SourceResult]) -> Table:
@@ -285,5 +279,4 @@ def _shown(value: Any) -> str:
         return ", ".join(map(_shown, value))
     if isinstance(value, dict):
         return ", ".join(f"{key} {_shown(item)}" for key, item in value.items())
-    text = str(value)
-    return text if len(text) <= 300 else text[:297] + "..."
+    return textwrap.shorten(str(value), 300)
