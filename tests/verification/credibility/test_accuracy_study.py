@@ -13,8 +13,8 @@ from synthetic_study import study
 from verification.commands import run as command
 from verification.commands.common import named_files, task_progress
 from verification.credibility import accuracy_study as accuracy_study
-from verification.credibility.accuracy_study import BARE, COATED, from_json, to_json
-from verification.credibility.refinement_studies import QUANTITIES, order_of, refined_grid
+from verification.credibility.accuracy_study import BARE, to_json
+from verification.credibility.refinement_studies import order_of, refined_grid
 from verification.judging.outcome import Outcome
 from verification.regression.run_exit_codes import EXIT
 from verification.running.checked_files import StoreError, write_checked
@@ -49,17 +49,6 @@ def test_study_goes_on_where_a_part_of_it_fails(monkeypatch):
     assert len(found.failures) == 4
 
 
-def test_a_refinement_study_keeps_the_friction_of_its_problem():
-    given = []
-
-    def solver(problem, numerics):
-        given.append(problem)
-        raise ValueError("no more than the problem is needed")
-
-    refined_grid(replace(COATED, friction=0.25), (33,), solve=solver)
-    assert given[0].friction == 0.25
-
-
 @pytest.mark.parametrize(
     ("resolution", "errors", "order"),
     [
@@ -79,21 +68,6 @@ def test_a_refinement_study_keeps_the_friction_of_its_problem():
 )
 def test_order_is_that_of_the_errors_that_fall(resolution, errors, order):
     assert order_of(resolution, errors) == order
-
-
-def test_study_survives_strict_json_to_the_last_bit():
-    spoiled = study("conversions: no grid fits")
-    level = replace(spoiled.refinements[0].levels[0], errors=dict.fromkeys(QUANTITIES, float("nan")))
-    spoiled = replace(
-        spoiled, refinements=(replace(spoiled.refinements[0], levels=(level,)), *spoiled.refinements[1:])
-    )
-    text = json.dumps(to_json(spoiled), allow_nan=False)
-    back = from_json(json.loads(text))
-    assert json.dumps(to_json(back), allow_nan=False) == text
-    assert back.refinements[1:] == spoiled.refinements[1:]
-    assert np.isnan(back.refinements[0].levels[0].errors["p0"])
-    with pytest.raises(ValueError, match="schema"):
-        from_json(json.loads(text) | {"schema": "coatcheck-accuracy/0"})
 
 
 def test_study_is_kept_for_the_very_same_code_only(tmp_path, monkeypatch):

@@ -6,10 +6,10 @@ from dataclasses import astuple, replace
 import numpy as np
 import pytest
 from assumption_maps_made.map_axes import MEASURED, MapAxes
-from assumption_maps_made.measuring import assembled, measure, with_map
+from assumption_maps_made.measuring import assembled, measure
 
 from verification.commands.common.known_folders import RECORDS
-from verification.credibility.model_error import ASSUMPTIONS, PARABOLA, QUANTITIES, Assumption, model_error
+from verification.credibility.model_error import ASSUMPTIONS, QUANTITIES, Assumption, model_error
 from verification.evidence.assumption_maps import AssumptionMaps, Place, places_of, read_maps
 from verification.problem.coated_contact import CoatedContact
 from verification.running.case_result import RunInfo
@@ -41,13 +41,6 @@ def test_shipped_entries_are_those_measured_today(maps, name, index):
     assert today.change == pytest.approx(stored.change.reshape(len(QUANTITIES), -1)[:, index], rel=1e-3)
     expected = stored.uncertainty.reshape(len(QUANTITIES), -1)[:, index]
     assert today.uncertainty == pytest.approx(expected, rel=1e-3)
-
-
-def test_parabola_costs_the_square_of_the_contact_radius_all_over_the_map(maps):
-    sphere = maps.of("sphere")
-    along = [axis.name for axis in sphere.axes].index("width")
-    narrow, wide = (sphere.change[:3].take(i, axis=1 + along) for i in (0, 1))
-    assert np.log10(wide / narrow) == pytest.approx(np.full(wide.shape, 2.0), rel=0.05)
 
 
 # Of 60 random places of each map 95 and 93 % of the values of a quantity are covered, of most all; of 40 with
@@ -127,14 +120,6 @@ def test_two_poissons_ratios_are_read_at_both_with_half_of_the_range_as_uncertai
     assert U.approach == pytest.approx(abs(high.approach - low.approach) / 2, rel=1e-3)
 
 
-def test_hard_film_of_two_micrometres_is_on_the_map(maps):
-    """Steel on steel, sliding; finite elements at this place have 0.00101 of the peak pressure."""
-    film = CoatedContact(10e-3, 20.0, ((180e9, 0.2, 2e-6),), (210e9, 0.3), 0.15, (210e9, 0.3, ()))
-    change, U = ASSUMPTIONS["strains"].read(film, maps.of("strains").at)
-    assert change.peak_pressure == pytest.approx(0.00101, abs=U.peak_pressure)
-    assert 0 < U.peak_pressure < change.peak_pressure
-
-
 def test_friction_leaves_the_scalars_of_a_map_without_it(slow):
     value, _ = slow.of("slow").at(replace(Place(0.5, 0.3, 0.2, 0.1).problem, friction=0.3))
     assert value.approach is not None
@@ -170,16 +155,6 @@ def test_assumption_without_an_answer_is_missing_with_the_reason(slow):
     assert "0.3" in dict(model_error(wide, slow).missing)["slowness"]
 
 
-def test_coating_too_thin_for_a_direct_model_is_missing_at_once(slow):
-    thin = replace(INSIDE, coatings=((*INSIDE.coatings[0][:2], 1e-4 * INSIDE.a_h),))
-    assert "0.01 a_h" in dict(model_error(thin, slow).missing)[PARABOLA]
-
-
 def test_uncoated_problem_is_read_without_shear(slow):
     costs = {cost.quantity for cost in model_error(BARE, slow).costs if cost.assumption == "slowness"}
     assert costs == {"contact_radius", "approach", "peak_pressure", "tension"}
-
-
-def test_map_takes_the_place_of_its_predecessor(slow, maps):
-    both = with_map(with_map(maps, slow.maps[0]), slow.maps[0])
-    assert [one.assumption for one in both.maps] == ["sphere", "goodman", "bodies", "strains", "slow"]

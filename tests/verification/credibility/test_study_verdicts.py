@@ -10,9 +10,7 @@ from faults_planted import short_study
 from faults_planted.fault_anchor import Change
 from faults_planted.fault_catalogue import FAULTS
 from faults_planted.fault_planting import planted
-from synthetic_study import study
 
-from verification.credibility import accuracy_study
 from verification.credibility.exact_errors import FILMS, HERTZ, ExactError
 from verification.credibility.refinement_studies import Refinement, RefinementLevel
 from verification.credibility.study_verdicts import STAIRCASE, verdicts
@@ -140,9 +138,3 @@ def test_the_exit_code_of_a_run_counts_the_studies():
     assert code(studies=[Outcome.AGREES]) == 0
     assert code(studies=[Outcome.AGREES, Outcome.DISAGREES]) == 1
     assert code(studies=[Outcome.NO_RESULT]) == 3
-
-
-def test_a_stored_study_is_judged_when_it_is_read_again():
-    found = study("conversions: no grid fits")
-    back = accuracy_study.from_json(accuracy_study.to_json(found))
-    assert [row.name for row in back.verdicts] == [row.name for row in found.verdicts]

@@ -136,22 +136,6 @@ def test_the_numbers_come_out_of_the_page_as_csv(chromium: Page, report, tmp_pat
     assert len(text.splitlines()) == 66
 
 
-def test_the_pictures_below_the_contact_are_there(chromium: Page, report):
-    chromium.open(report, width=1360)
-    go(chromium, chromium.evaluate("document.querySelector('svg.field').closest('.page').id"))
-    assert chromium.evaluate("document.querySelectorAll('svg.field').length") == 6
-    loaded = """Promise.all([...document.querySelectorAll('svg.field image')].map(async (image) => {
-        const copy = new Image(); copy.src = image.getAttribute('href'); await copy.decode();
-        return copy.naturalWidth * copy.naturalHeight; })).then((sizes) => Math.min(...sizes))"""
-    assert chromium.evaluate(loaded) > 50
-    # Three panels in a row on a wide screen, one below the other on a phone.
-    places = """new Set([...document.querySelectorAll('.here .panel:has(.field)')].map(
-        (panel) => Math.round(panel.getBoundingClientRect().x))).size"""
-    assert chromium.evaluate(places) == 3
-    chromium.resize(390)
-    assert chromium.evaluate(places) == 1
-
-
 def test_a_pointer_on_a_comparison_names_it_and_a_click_draws_it(chromium: Page, report):
     chromium.open(report, width=1360)
     place = """(() => { const box = document.querySelector('.here svg.strip .ring').getBoundingClientRect();
