@@ -1,8 +1,10 @@
-"""Pages that are generated whole: every case, command, module; the protocol of guests."""
+"""Pages that are generated whole: every case, command, public name; the protocol of guests."""
 
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 
 from verification.manual.case_pages import contact_pages, published_pages
@@ -10,22 +12,11 @@ from verification.manual.tour_output import picture
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ROOT = PACKAGE.parent
-API = {
-    "semianalytic": "Semi-analytical method",
-    "fem_reference": "Finite element method",
-    "verification/problem": "Problem",
-    "verification/sources": "Sources",
-    "verification/judging": "Verdicts",
-    "verification/cases": "Case files",
-    "verification/sampling": "Sampled values",
-    "verification/running": "Runs",
-    "verification/study": "Parameter studies",
-    "verification/regression": "Baseline",
-    "verification/guests": "Codes of others",
-    "verification/validation": "Comparison with measurements",
-    "verification/credibility": "Credibility",
-    "verification/desk": "Answer to one problem",
-}
+SOURCE = Path(__file__).parent / "source"
+PUBLIC = ("verification", "semianalytic", "fem_reference")
+# What a page of the manual points to in the code.
+POINTED = re.compile(r"\{py:(class|func|mod)\}`([\w.]+)`")
+DIRECTIVES = {"class": "autoclass", "func": "autofunction", "mod": "automodule"}
 # The help of every command in one process, which knows nothing of this room.
 HELP = """
 import io
@@ -81,25 +72,22 @@ def _commands() -> str:
 
 
 def _api() -> Iterator[tuple[str, str]]:
-    """A page for each room, with the docstrings of its modules."""
-    entries = []
-    for place, title in API.items():
-        name = place.replace("/", "_")
-        entries.append(name)
-        parts = [f"# {title}: `{place.replace('/', '.')}`"]
-        for module in _modules(ROOT / place):
-            parts.append(f"## `{module}`\n\n```{{eval-rst}}\n.. automodule:: {module}\n   :members:\n```")
-        yield f"api/{name}.md", "\n\n".join(parts) + "\n"
-    toc = "\n".join(entries)
-    text = "Every public class and function, from its docstring."
-    yield "api/index.md", f"# API reference\n\n{text}\n\n```{{toctree}}\n:maxdepth: 1\n\n{toc}\n```\n"
+    """A page of the public names, and one of what other pages point to in the code."""
+    parts = ["# Public names", "What to import; each name with its docstring and a link to its source."]
+    for package in PUBLIC:
+        parts.append(f"## `{package}`\n\n{_directive('mod', package)}")
+        known = import_module(package)
+        for name in known.__all__:
+            kind = "class" if isinstance(getattr(known, name), type) else "func"
+            parts.append(_directive(kind, f"{package}.{name}"))
+    yield "api.md", "\n\n".join(parts) + "\n"
+    text = "\n".join(path.read_text(encoding="utf-8") for path in sorted(SOURCE.glob("*.md")))
+    pointed = {name: kind for kind, name in POINTED.findall(text)}
+    parts = ["# Code behind the pages", "Modules, classes and functions that pages of this manual point to."]
+    parts += [_directive(pointed[name], name) for name in sorted(pointed)]
+    yield "code.md", "\n\n".join(parts) + "\n"
 
 
-def _modules(folder: Path) -> list[str]:
-    """Dotted names of the modules in ``folder``, without the adapters of guests."""
-    found = []
-    for path in sorted(folder.rglob("*.py")):
-        words = path.relative_to(ROOT).with_suffix("").parts
-        if "examples" not in words and path.stem != "__init__":
-            found.append(".".join(words))
-    return found
+def _directive(kind: str, name: str) -> str:
+    members = "   :members:\n" if kind == "class" else ""
+    return f"```{{eval-rst}}\n.. {DIRECTIVES[kind]}:: {name}\n{members}```"

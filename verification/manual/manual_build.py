@@ -17,6 +17,7 @@ from verification.manual.generated_pages import generated_pages
 
 NEEDED = ("sphinx", "myst_parser", "furo")
 BLOCK = re.compile(r"^```\{generated\} (\w+)\n```$", re.MULTILINE)
+EXTENSION = "verification.manual.sphinx_extension"
 MARK = "objects.inv"  # a file of every manual, by which a folder is known as one
 
 
@@ -95,11 +96,11 @@ def _settings() -> dict[str, Any]:
     """Configuration of Sphinx: nothing of a page is loaded from the network."""
     return {
         "project": "coatcheck",
-        "author": "the coatcheck authors",
-        "copyright": "the coatcheck authors",
+        "author": "the coatcheck developers",
+        "copyright": "the coatcheck developers",
         "version": version("coatcheck"),
         "release": version("coatcheck"),
-        "extensions": ["myst_parser", "sphinx.ext.autodoc", "verification.manual.sphinx_extension"],
+        "extensions": ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.viewcode", EXTENSION],
         "myst_enable_extensions": ["dollarmath", "amsmath", "deflist", "colon_fence", "attrs_inline"],
         "myst_heading_anchors": 4,
         "html_math_renderer": "mathml",

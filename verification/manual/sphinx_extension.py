@@ -6,6 +6,7 @@ from typing import Any
 
 # Code between backticks, or a character that reStructuredText would read as markup.
 MARKUP = re.compile(r"(``.+?``)|[\\*`|_]")
+FIELD = re.compile(r"\w[\w,.*` ]{0,50} : ")
 ARRAY = re.compile(
     r"(?:numpy\.)?ndarray\[(?:tuple\[(?:typing\.)?Any, \.\.\.\]|[^\[\],]*), dtype\[(?:numpy\.)?\w+\]\]"
 )
@@ -63,7 +64,23 @@ def _signature(
 
 
 def restructured(text: str) -> str:
-    """A docstring as reStructuredText: its first paragraph, then the rest as it is written."""
-    first, _, rest = text.strip("\n").partition("\n\n")
-    summary = MARKUP.sub(lambda found: found[0] if found[1] else "\\" + found[0], " ".join(first.split()))
-    return f"{summary}\n\n::\n\n{indent(rest, '    ')}\n" if rest.strip() else summary
+    """A docstring as reStructuredText: formulas as they are written, "name : meaning" as a list of fields."""
+    parts = []
+    for paragraph in re.split(r"\n *\n", text.strip("\n")):
+        flat = MARKUP.sub(
+            lambda found: found[0] if found[1] else "\\" + found[0], " ".join(paragraph.split())
+        )
+        if paragraph.startswith((" ", "...", ">>>")):
+            parts.append(f"::\n\n{indent(paragraph, '    ')}")
+        elif FIELD.match(paragraph):
+            # each begins a line, or stands behind three spaces
+            fields = re.sub(r"(?:^|\n|   +)(?=\w[\w,.*` ]{0,50} : )", "\0", paragraph).split("\0")[1:]
+            parts += [_field(*one.partition(" : ")[::2]) for one in fields]
+        else:
+            parts.append(flat)
+    return "\n\n".join(parts) + "\n"
+
+
+def _field(name: str, meaning: str) -> str:
+    said = MARKUP.sub(lambda found: found[0] if found[1] else "\\" + found[0], " ".join(meaning.split()))
+    return f":{name.strip()}: {said}"

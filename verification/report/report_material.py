@@ -32,6 +32,7 @@ from verification.running.provenance import machine
 from verification.running.stored_fields import read_planes
 from verification.sampling.stress_plane import Plane
 from verification.validation import validation_page
+from verification.validation.validation_metric import ValidationRecord
 
 T = TypeVar("T")
 
@@ -40,7 +41,7 @@ T = TypeVar("T")
 class Evidence:
     """What a report shows beside the results; None or () for what is missing, see ``failures``.
 
-    code, faults, alarms, enclosures : read from records.
+    code, faults, alarms, enclosures, validation : read from records.
     accuracy : errors of the methods over resolution.
     baseline : the change of each number since the baseline.
     maps : what the assumptions of the model cost.   models : the same of each case, by its name.
@@ -59,6 +60,7 @@ class Evidence:
     enclosures: EnclosureRecord | None = None
     maps: AssumptionMaps | None = None
     older: tuple[str, ...] = ()
+    validation: ValidationRecord | None = None
     models: Mapping[str, ModelError] = field(default_factory=dict)
     beyond: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     designed: Mapping[str, Designed] = field(default_factory=dict)
@@ -111,9 +113,9 @@ def gather(
         "alarms": alarm_record.read_record,
         "enclosures": enclosure_record.read_record,
         "maps": read_maps,
+        "validation": lambda _: validation_page.shipped(),
     }
     found = {name: attempt(name, partial(read, records), None) for name, read in readers.items()}
-    dated = {**found, "validation": validation_page.shipped()}
     models = {
         name: attempt(
             f"error of the model, {name}", partial(model_error, one.problem, found["maps"]), ModelError(())
@@ -124,7 +126,7 @@ def gather(
         **found,
         failures=tuple(failures),
         self_tests=tuple(self_tests),
-        older=tuple(name for name, made in dated.items() if made is not None and is_older(name, made)),
+        older=tuple(name for name, made in found.items() if made is not None and is_older(name, made)),
         models=models,
         beyond={
             name: models[name].warnings(judged_quantities(one.quantities), one.warnings)

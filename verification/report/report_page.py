@@ -79,7 +79,7 @@ def _sections(material: Material) -> list[tuple[str, list[Section]]]:
         _dated(model_section.section(found.maps), older="maps" in found.older),
         baseline_section.section(found.baseline, anchors),
         guests_section.section(),
-        validation_page.section(measured) if (measured := validation_page.shipped()) else None,
+        validation_page.section(found.validation) if found.validation else None,
     )
     groups = (("Results", results), ("Evidence", evidence))
     return [(group, shown) for group, pages in groups if (shown := [page for page in pages if page])]

@@ -30,7 +30,6 @@ from verification.running.published_counts import counts
 from verification.sampling.line_sampling import CLEAR
 from verification.sources.source_record import Independence
 from verification.sources.source_registry import CLOSED, METHODS, SOURCES, independence
-from verification.validation import validation_page
 
 MOST_ROWS = 20  # strips of the first page; of more cases the worst have their own, the others share some
 OWN_ROWS = 6  # with them the page of the shipped cases has less than 600 words
@@ -319,7 +318,7 @@ def _unverified(material: Material) -> list[str]:
         "Residual stress, temperature, graded coatings, strengths and critical loads: coatcheck solve and "
         "study add them to the stresses, without a second method.",
         "Stress, friction and shape of the contact in an experiment."
-        if validation_page.shipped()
+        if material.evidence.validation
         else "Any experiment.",
     ]
     share, count = left_out(material.results)
@@ -360,7 +359,7 @@ def worth(material: Material) -> list[Worth]:
                 recorded(f"faults planted in the {place} noticed", good, total, "#faults", faults)
         silent = [row not in faults.alarms for row in faults.controls]
         share("runs without a fault left alone", silent if not all(silent) else (), "#faults")
-    if measured := validation_page.shipped():
+    if measured := evidence.validation:
         compared = [one for one in measured.sets if not one.measured.reason]
         if compared:
             mean = max((one.mean for one in compared), key=abs)
