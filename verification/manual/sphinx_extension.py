@@ -7,6 +7,11 @@ from typing import Any
 # Code between backticks, or a character that reStructuredText would read as markup.
 MARKUP = re.compile(r"(``.+?``)|[\\*`|_]")
 FIELD = re.compile(r"\w[\w,.*` ]{0,50} : ")
+# How NumPy spells out ArrayLike.
+LIKE = (
+    "_Buffer | _SupportsArray[dtype[Any]] | _NestedSequence[_SupportsArray[dtype[Any]]] | complex | bytes | str "
+    "| _NestedSequence[complex | bytes | str]"
+)
 ARRAY = re.compile(
     r"(?:numpy\.)?ndarray\[(?:tuple\[(?:typing\.)?Any, \.\.\.\]|[^\[\],]*), dtype\[(?:numpy\.)?\w+\]\]"
 )
@@ -58,15 +63,15 @@ def _missing(app: Any, env: Any, node: Any, content: Any) -> None:
 
 def _signature(
     app: Any, what: str, name: str, it: object, options: object, given: str | None, returned: str | None
-) -> tuple[str | None, str | None]:
+) -> tuple[str | None, ...]:
     """Arguments and result with NumPy's arrays as Array, which alone tells a reader something."""
-    return given and ARRAY.sub("Array", given), returned and ARRAY.sub("Array", returned)
+    return tuple(text and ARRAY.sub("Array", text.replace(LIKE, "ArrayLike")) for text in (given, returned))
 
 
 def restructured(text: str) -> str:
     """A docstring as reStructuredText: formulas as they are written, "name : meaning" as a list of fields."""
     parts = []
-    for paragraph in re.split(r"\n *\n", text.strip("\n")):
+    for paragraph in re.split(r"\n *\n|\n(?=Returns|Raises)", text.strip("\n")):
         flat = MARKUP.sub(
             lambda found: found[0] if found[1] else "\\" + found[0], " ".join(paragraph.split())
         )

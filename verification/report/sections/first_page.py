@@ -127,10 +127,10 @@ def _largest(material: Material) -> list[str]:
         text = f"{scientific(gap)}, cap {claim.cap:g}"
         texts.append(f"Beside edges not round, in {len(edge)} comparisons: {text}.")
     gaps = [
-        (gap, result.name)
+        (apart, result.name)
         for result in material.contacts
         if (plane := material.planes.get(result.name)) is not None
-        and (gap := plane_difference(plane, float(divisor(result, "sigma_xx", 0.0)))) is not None
+        and (apart := plane_difference(plane, float(divisor(result, "sigma_xx", 0.0)))) is not None
     ]
     if gaps:
         gap, name = max(gaps)
@@ -381,9 +381,9 @@ def worth(material: Material) -> list[Worth]:
     if regression is not None and regression.update is not None:
         same = sum(case.count(State.SAME) for case in regression.cases)
         total = sum(case.count(state) for case in regression.cases for state in State)
-        good = False if regression.unexplained else True if same == total else None
+        as_before = False if regression.unexplained else True if same == total else None
         value = f"all {total}" if same == total else f"{same} of {total}"
-        found.append(Worth("numbers as in the baseline", value, "#baseline", good))
+        found.append(Worth("numbers as in the baseline", value, "#baseline", as_before))
     share("self-tests passed", [test.passed for test in evidence.self_tests], "#self-tests")
     return found
 

@@ -102,21 +102,13 @@ def _stated_columns(result: CaseResult, body: str, count: int) -> list[tuple[str
     for name in ("hardness", "yield_strength"):
         found[name.replace("_", " ")] = [limits.get(f"{place}.{name}") for place in places]
 
-    def shown(values: list[Any], at: int) -> Value:
-        value = values[at - 1]
-        return (
-            value
-            if isinstance(value, str)
-            else ""
-            if value is None
-            else Cell(engineering(value, "Pa"), value)
-        )
+    def shown(values: list[Any], at: Any) -> Value:
+        value = values[at[0] - 1]
+        if value is None or isinstance(value, str):
+            return value or ""
+        return Cell(engineering(value, "Pa"), value)
 
-    return [
-        (head, lambda at, values=values: shown(values, at[0]))
-        for head, values in found.items()
-        if any(values)
-    ]
+    return [(head, partial(shown, values)) for head, values in found.items() if any(values)]
 
 
 def stress_table(result: CaseResult, found: Designed) -> Table:
