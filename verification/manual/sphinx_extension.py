@@ -9,8 +9,8 @@ MARKUP = re.compile(r"(``.+?``)|[\\*`|_]")
 FIELD = re.compile(r"\w[\w,.*` ]{0,50} : ")
 # How NumPy spells out ArrayLike.
 LIKE = (
-    "_Buffer | _SupportsArray[dtype[Any]] | _NestedSequence[_SupportsArray[dtype[Any]]] | complex | bytes | str "
-    "| _NestedSequence[complex | bytes | str]"
+    "_Buffer | _SupportsArray[dtype[Any]] | _NestedSequence[_SupportsArray[dtype[Any]]] | complex | bytes "
+    "| str | _NestedSequence[complex | bytes | str]"
 )
 ARRAY = re.compile(
     r"(?:numpy\.)?ndarray\[(?:tuple\[(?:typing\.)?Any, \.\.\.\]|[^\[\],]*), dtype\[(?:numpy\.)?\w+\]\]"
