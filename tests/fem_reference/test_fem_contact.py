@@ -14,7 +14,7 @@ from fem_reference.contact.fixed_radius import _even_at_the_axis, complementarit
 from fem_reference.elasticity.axisymmetric import Discretisation
 from fem_reference.meshing.mesh import Grading, meridian_mesh
 from fem_reference.scaling import LayeredSolid
-from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
 
 R, W = 10e-3, 20.0
 E, NU = 210e9, 0.3
@@ -274,7 +274,7 @@ def test_full_tensor_of_sliding_is_hamiltons():
     low, high = [-1.5, -1.5, 0.25], [1.5, 1.5, 2]
     x, y, z = A_H * np.random.default_rng(3).uniform(low, high, (40, 3)).T
     found = sliding().stress(x, y, z) - sliding(0.0).stress(x, y, z)
-    exact = F * Hamilton(R, W, E, NU, F).stress_of_traction(x, y, z)
+    exact = F * Hertz(R, W, E, NU, F).stress_of_traction(x, y, z)
     assert np.abs(found - exact).max() < 1e-4 * F * P_H
 
 

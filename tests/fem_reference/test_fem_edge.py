@@ -8,7 +8,7 @@ from fem_reference.elasticity.axisymmetric import Discretisation
 from fem_reference.elasticity.recovery import EDGE_SERIES, HarmonicField
 from fem_reference.meshing.mesh import EDGE_SIZE, Grading, meridian_mesh
 from verification.problem.point_answers import Points
-from verification.sources.references import hamilton, integral_equation
+from verification.sources.references import hertz, integral_equation
 
 R, W, E, NU = 10e-3, 20.0, 210e9, 0.3
 A_H = (3 * W * R * (1 - NU**2) / (4 * E)) ** (1 / 3)
@@ -38,10 +38,7 @@ def test_tension_at_the_edge_equals_the_exact_value_on_both_sides(ratio, thickne
 
 def test_largest_tension_of_a_sliding_contact_lies_at_the_edge():
     given = problem(1, 0)
-    s, exact = (
-        solve(**given, quality="fast", estimate_uncertainty=False),
-        hamilton.Hamilton(R, W, E, NU, 0.25),
-    )
+    s, exact = (solve(**given, quality="fast", estimate_uncertainty=False), hertz.Hertz(R, W, E, NU, 0.25))
     offsets = 10 ** np.linspace(-9, -1.5, 100)
     x = -s.contact_radius * (1 + np.concatenate([-offsets, [0.0], offsets]))
     sigma = s.stress(x, 0.0, 0.0)[0, 0]
@@ -51,7 +48,7 @@ def test_largest_tension_of_a_sliding_contact_lies_at_the_edge():
 
 @pytest.mark.parametrize("friction", [0.0, 0.5])
 def test_the_estimate_covers_the_error_in_the_strip_around_the_edge(friction):
-    s, exact = solve(**problem(1, 0, friction), quality="fast"), hamilton.Hamilton(R, W, E, NU, friction)
+    s, exact = solve(**problem(1, 0, friction), quality="fast"), hertz.Hertz(R, W, E, NU, friction)
     rng = np.random.default_rng(1)
     n, a = 3000, exact.contact_radius
     offset = np.where(rng.random(n) < 0.5, rng.uniform(0, 0.1, n), 10 ** rng.uniform(-9, -1, n))

@@ -17,7 +17,7 @@ from semianalytic.edge.edge_shape import EVEN, FULL, Shape
 from semianalytic.inputs import Body
 from semianalytic.stresses import subsurface
 from semianalytic.stresses.rings import Disc, SmoothContour, rings_of
-from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
 
 NU, F = 0.3, 0.4
 BARE = Body((), (1.0, NU), F)
@@ -25,7 +25,7 @@ SIX = ((0, 1, 2, 0, 0, 1), (0, 1, 2, 1, 2, 2))
 RINGS = 2e-8  # of the peak pressure: error that `solution` allows the rings
 DISC = Disc(1.0, lambda square: np.sqrt(np.maximum(1 - square, 0)))
 # a = p0 = 1: W = 2 pi/3, R = 4 E*/(3 W)
-HERTZ = Hamilton(radius=2 / np.pi / (1 - NU**2), load=2 * np.pi / 3, E=1.0, nu=NU, friction=F)
+HERTZ = Hertz(radius=2 / np.pi / (1 - NU**2), load=2 * np.pi / 3, E=1.0, nu=NU, friction=F)
 COATED = Body(((4.0, 0.25, 0.3), (0.3, 0.4, 0.15)), (1.0, 0.3), F)
 THIN = Body(((10.0, 0.3, 0.02),), (1.0, 0.3), F)
 # inside, at, and outside the edge; on the surface and down from it

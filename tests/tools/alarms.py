@@ -7,10 +7,10 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from drawn_problems import Draw, draw, draw_ellipse
 from rich.markup import escape
 
 from verification.cases.case_file import Case, parse_case
-from verification.cases.random_problems import Draw, draw, draw_ellipse
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.known_folders import RECORDS, require_checkout
 from verification.commands.common.shared_options import (

@@ -19,8 +19,8 @@ class LayerEntry(Strict):
     thickness_over_a_h: Positive | None = None
 
 
-class BallEntry(Strict):
-    """An elastic ball; its coatings from its surface inwards."""
+class PublishedBall(Strict):
+    """An elastic ball in the units of the source; its coatings from its surface inwards."""
 
     E: Pascals
     nu: Poisson
@@ -40,7 +40,7 @@ class ProblemEntry(Strict):
     load_unit: Text = "N"
     substrate: LayerEntry
     coatings: Annotated[list[LayerEntry], Field(default_factory=list, max_length=50)]
-    ball: BallEntry | None = None
+    ball: PublishedBall | None = None
     friction: Friction = 0.0
     pressure: Pascals | None = None
     load_radius: Metres | None = None

@@ -36,9 +36,18 @@ class Material(Limited):
     expansion: Expansion | None = None
 
 
-class Stressed(Strict):
-    """A coating with a residual stress, given or by thermal mismatch."""
+class Coating(Limited):
+    """One coating; of a graded one E is a course over its depth, followed by ``layers`` sub-layers.
 
+    E and thickness may be missing where a study sweeps them.   residual_stress : given, or by the mismatch of
+    its thermal ``expansion``.
+    """
+
+    E: Modulus | None = None
+    nu: Poisson
+    thickness: Metres | None = None
+    thickness_over_a_h: Positive | None = None
+    layers: Annotated[int, Field(ge=2, le=LAYERS)] | None = None
     residual_stress: AnyPascals | None = None
     expansion: Expansion | None = None
 
@@ -57,19 +66,6 @@ class Stressed(Strict):
         if below is None or change is None:
             raise ValueError("expansion requires that of the substrate, and problem.temperature_change")
         return E / (1 - nu) * (below - self.expansion) * change
-
-
-class Coating(Limited, Stressed):
-    """One coating; of a graded one E is a course over its depth, followed by ``layers`` sub-layers.
-
-    E and thickness may be missing where a study sweeps them.
-    """
-
-    E: Modulus | None = None
-    nu: Poisson
-    thickness: Metres | None = None
-    thickness_over_a_h: Positive | None = None
-    layers: Annotated[int, Field(ge=2, le=LAYERS)] | None = None
 
     @model_validator(mode="before")
     @classmethod

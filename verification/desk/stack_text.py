@@ -3,7 +3,7 @@
 from itertools import accumulate, pairwise
 
 from verification.cases.case_file import Case
-from verification.cases.random_problems import (
+from verification.cases.drawn_ranges import (
     FILM_RATIO,
     FILM_THICKNESS,
     MOST_FILMS,

@@ -103,12 +103,12 @@ class Subject(Case):
         if isinstance(problem, SquareLoad):
             return self._under_square(problem)
         if self.problem.indenter is not None:
-            return sample_contact(hertz(self.problem), CLOSED_FORM, self.problem)
+            return sample_contact(hertz(self.problem), CLOSED_FORM)
         solution = solve_exactly(problem)
         places = positions(
             self.problem, [line for line in self.lines if line.name != PLANE], {REFERENCE: solution}
         )
-        found = list(sample_contact(solution, REFERENCE, self.problem))
+        found = list(sample_contact(solution, REFERENCE))
         peaks = self.problem if self.load == SPHERE else None
         for line in self.lines:
             at = places[line] if line in places else ACROSS * solution.contact_radius

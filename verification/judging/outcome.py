@@ -1,5 +1,6 @@
 """The outcomes of a comparison."""
 
+from collections.abc import Iterable
 from enum import StrEnum
 
 
@@ -17,3 +18,10 @@ class Outcome(StrEnum):
 
 
 DECIDED = tuple(outcome for outcome in Outcome if outcome is not Outcome.UNSUPPORTED)
+
+
+def worst(outcomes: Iterable[Outcome]) -> Outcome:
+    """Disagreement before a missing result before inconclusive; no result where nothing was judged."""
+    found = set(outcomes)
+    order = (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE, Outcome.AGREES)
+    return next((outcome for outcome in order if outcome in found), Outcome.NO_RESULT)

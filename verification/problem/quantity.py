@@ -65,6 +65,15 @@ def _tensor(
         yield Quantity(symbol, kind, _POINTS, symbol, f"{tex}_{{{c}}}", unit, "p_h", cap, component=place)
 
 
+def _tension(kind: str, end: str = "", of: str = "", tex: str = "") -> Iterator[Quantity]:
+    """The largest tension of a body with its place."""
+    largest, tension = f"max sigma_xx{of}", _TENSION + ("," + of if of else "")
+    symbol, place = rf"\max\sigma_{{xx}}{tex}", _PLACE + of
+    yield Quantity(f"largest_tension{end}", kind, _SURFACE, largest, symbol, "Pa", meaning=tension)
+    where = f"x of {largest}", f"x{tex}", "m", "a_h", 2e-4
+    yield Quantity(f"tension_place{end}", kind, _SURFACE, *where, meaning=place)
+
+
 _AXIS, _CONTACT, _CURVE, _POINTS, _SURFACE = ("axis",), ("contact",), ("curve",), ("points",), ("surface",)
 _BOTH = (*_CONTACT, *_CURVE)
 _SHEAR, _MISES = "largest shear on the axis", "largest von Mises stress on the axis"
@@ -86,32 +95,8 @@ QUANTITIES: dict[str, Quantity] = {
         ),
         Quantity("tau_max", "scalar", _AXIS, "tau_max", r"\tau_{max}", "Pa", meaning=_SHEAR),
         Quantity("von_mises_max", "scalar", _AXIS, "von_mises_max", r"\sigma_{vM}", "Pa", meaning=_MISES),
-        Quantity(
-            "largest_tension", "peak", _SURFACE, "max sigma_xx", r"\max\sigma_{xx}", "Pa", meaning=_TENSION
-        ),
-        Quantity(
-            "tension_place", "peak", _SURFACE, "x of max sigma_xx", "x", "m", "a_h", 2e-4, meaning=_PLACE
-        ),
-        Quantity(
-            "largest_tension_ball",
-            "ball peak",
-            _SURFACE,
-            "max sigma_xx of the ball",
-            r"\max\sigma_{xx}^b",
-            "Pa",
-            meaning=f"{_TENSION}, of the ball",
-        ),
-        Quantity(
-            "tension_place_ball",
-            "ball peak",
-            _SURFACE,
-            "x of max sigma_xx of the ball",
-            "x^b",
-            "m",
-            "a_h",
-            2e-4,
-            meaning=f"{_PLACE} of the ball",
-        ),
+        *_tension("peak"),
+        *_tension("ball peak", "_ball", " of the ball", "^b"),
         Quantity("load", "curve", _CURVE, "W", "W", "N", cap=_LOOSE),
         Quantity("kappa", "curve", _CURVE, "kappa", r"\kappa", "1", cap=_LOOSE, meaning=_PUNCH),
         Quantity("series_over_load", "curve", _CURVE, "series / W", "", "1", cap=_LOOSE, meaning=_LOADS),

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from verification.judging.outcome import Outcome
+from verification.judging.outcome import Outcome, worst
 
 if TYPE_CHECKING:
     from verification.regression.baseline_change import Regression
@@ -15,25 +15,19 @@ LESS = 6  # all agree, but less was judged than the manifest records
 
 
 def exit_code(results: Sequence["CaseResult"]) -> int:
-    """The code of the worst outcome: disagreement before a missing result before inconclusive."""
-    found = {result.outcome for result in results}
-    for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):
-        if outcome in found:
-            return EXIT[outcome]
-    return EXIT[Outcome.AGREES] if found else EXIT[Outcome.NO_RESULT]
+    """The code of the worst outcome."""
+    return EXIT[worst(result.outcome for result in results)]
 
 
 def run_code(
     results: Sequence["CaseResult"], beside: "Regression", *, passed: bool, studies: Sequence[Outcome] = ()
 ) -> int:
-    """That of the worst outcome; where all agree that of the self-tests, the manifest, the baseline.
+    """Exit code of the worst outcome; where all agree that of the self-tests, the manifest, the baseline.
 
     passed : whether every self-test of the harness did.   studies : outcomes of the judged studies.
     """
-    code = exit_code(results)
-    for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):
-        if code == EXIT[outcome] or outcome in studies:
-            return EXIT[outcome]
+    if code := EXIT[worst([worst(result.outcome for result in results), *studies])]:
+        return code
     if not passed:
         return EXIT[Outcome.DISAGREES]
     return LESS if beside.less else DRIFTED if beside.unexplained else code

@@ -1,10 +1,13 @@
 """The result of a case, with its exact JSON form."""
 
+import time
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, is_dataclass
 from functools import cached_property
 from typing import Any
 
 from verification.judging.invariants import Invariant
+from verification.judging.outcome import worst
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad
 from verification.problem.line_profile import Profile
@@ -59,13 +62,13 @@ class CaseResult:
     @classmethod
     def of(cls, case: Any, **parts: Any) -> "CaseResult":
         """The result of ``case`` with these ``parts``, empty where none are given."""
-        stated: dict[str, Any] = {name: getattr(case, name) for name in ("name", "title", "source", "text")}
-        empty: dict[str, Any] = {"sources": (), "profiles": (), "verdicts": (), "seconds": 0.0}
-        found = {name: getattr(case, name, {}) for name in ("names", "residual", "limits", "layers")}
-        if not any(name for names in found["names"].values() for name in names):
-            found["names"] = {}
-        empty |= {"stated": {name: value for name, value in found.items() if value}}
-        return cls(**stated, problem=describe(case.problem), **empty | parts)
+        given = {name: getattr(case, name) for name in ("name", "title", "source", "text")}
+        stated = {name: getattr(case, name, {}) for name in ("names", "residual", "limits", "layers")}
+        if not any(name for names in stated["names"].values() for name in names):
+            stated["names"] = {}
+        empty = {"sources": (), "profiles": (), "verdicts": (), "seconds": 0.0}
+        given |= empty | {"stated": {name: value for name, value in stated.items() if value}} | parts
+        return cls(problem=describe(case.problem), **given)
 
     @classmethod
     def failed(cls, case: Any, reason: str, seconds: float, **parts: Any) -> "CaseResult":
@@ -76,17 +79,10 @@ class CaseResult:
 
     @property
     def outcome(self) -> Outcome:
-        """The worst verdict or invariant: DISAGREES, then NO_RESULT, then INCONCLUSIVE, then AGREES.
-
-        Without any verdict no better than NO_RESULT, whatever the invariants are.
-        """
-        found = {verdict.outcome for _, verdict in self.verdicts}
-        found |= {invariant.outcome for invariant in self.invariants}
-        for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE):
-            if outcome in found:
-                return outcome
-        agreeing = any(verdict.outcome is Outcome.AGREES for _, verdict in self.verdicts)
-        return Outcome.AGREES if agreeing else Outcome.NO_RESULT
+        """The worst of verdicts and invariants; without any verdict no better than NO_RESULT."""
+        judged = {verdict.outcome for _, verdict in self.verdicts}
+        found = worst(judged | {invariant.outcome for invariant in self.invariants})
+        return found if found is not Outcome.AGREES or Outcome.AGREES in judged else Outcome.NO_RESULT
 
     @cached_property
     def profile_of(self) -> dict[tuple[str, str, str], Profile]:
@@ -155,11 +151,16 @@ def describe(problem: CoatedContact | PrescribedLoad | LoadingCurve) -> dict[str
     }
 
 
-def diagnostics_of(diagnostics: Any) -> dict[str, Any]:
-    """A source's own record as a dictionary."""
-    if isinstance(diagnostics, dict):
-        return diagnostics
-    return asdict(diagnostics) if is_dataclass(diagnostics) and not isinstance(diagnostics, type) else {}
+def attempted(source: str, solve: Callable[[], Any]) -> tuple[Any, SourceResult]:
+    """What ``solve`` finds, None where it fails, and the row of the report: any failed solve is a message."""
+    begin = time.perf_counter()
+    try:
+        found = solve()
+    except Exception as error:
+        return None, SourceResult(source, time.perf_counter() - begin, message_of(error))
+    known, budget = found.diagnostics, getattr(found.uncertainty, "budget", ())
+    diagnostics = known if isinstance(known, dict) else asdict(known) if is_dataclass(known) else {}
+    return found, SourceResult(source, time.perf_counter() - begin, None, diagnostics, budget)
 
 
 def message_of(error: Exception) -> str:

@@ -2,7 +2,8 @@
 
 import time
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.line_profile import Profile, lines_of
 from verification.problem.point_answers import FLAT
 from verification.problem.quantity import QUANTITIES, SCALARS, largest_strain
-from verification.running.case_result import CaseResult, SourceResult, diagnostics_of, message_of
+from verification.running.case_result import CaseResult, SourceResult, attempted, message_of
 from verification.sampling.line_sampling import edge_of, ends_of, positions, sample, sample_contact
 from verification.sources.source_record import Solver
 from verification.sources.source_registry import solvers, sources_of
@@ -49,23 +50,18 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
     outcomes: dict[str, SourceResult] = {}
     solutions: dict[str, Solution] = {}
     for source in (name for name in available if name in wanted):
-        begin = time.perf_counter()
-        try:
-            solution = available[source](case.problem, case.keywords(source))
-            for name in SCALARS:
-                if not np.isfinite(value := solution.sample(None, name, False).value):
-                    raise ValueError(f"{name} = {value}; the solution is not finite")
-        except Exception as error:  # any failed solve is a row of the report
-            outcomes[source] = SourceResult(source, time.perf_counter() - begin, message_of(error))
-            continue
-        solutions[source] = solution
-        outcomes[source] = SourceResult(
-            source,
-            time.perf_counter() - begin,
-            diagnostics=diagnostics_of(solution.diagnostics),
-            budget=getattr(solution.uncertainty, "budget", ()),
-        )
+        solution, outcomes[source] = attempted(source, partial(_solved, case, source, available[source]))
+        if solution is not None:
+            solutions[source] = solution
     return Solved(solutions, outcomes, resolved(case.problem, available) if case.resolve else ())
+
+
+def _solved(case: Case, source: str, solve: Solver) -> Solution:
+    solution: Solution = solve(case.problem, case.keywords(source))
+    for name in SCALARS:
+        if not np.isfinite(value := solution.sample(None, name, False).value):
+            raise ValueError(f"{name} = {value}; the solution is not finite")
+    return solution
 
 
 def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseResult:
@@ -82,17 +78,15 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
         shaped = case.problem.indenter is not None
         edge = ends_of(next(iter(solutions.values()))) if shaped else edge_of(solutions)
     for source, solution in solutions.items():
-        begin = time.perf_counter()
+        begin, old = time.perf_counter(), outcomes[source]
         try:
-            found = list(sample_contact(solution, source, case.problem))
+            found = list(sample_contact(solution, source))
             for line in case.lines if source in sources_of(case.problem) else ():
                 found += sample(solution, source, line, places[line], case.problem, edge)
-        except Exception as error:  # as above
-            outcomes[source] = SourceResult(source, outcomes[source].seconds, message_of(error))
+        except Exception as error:  # any failed source is a row of the report
+            outcomes[source] = SourceResult(source, old.seconds, message_of(error))
             continue
-        old = outcomes[source]
-        seconds = old.seconds + time.perf_counter() - begin
-        outcomes[source] = SourceResult(source, seconds, None, old.diagnostics, old.budget)
+        outcomes[source] = replace(old, seconds=old.seconds + time.perf_counter() - begin)
         profiles |= {(p.quantity, p.line, source): p for p in found}
 
     held: list[Invariant] = []
@@ -118,21 +112,19 @@ def _strains(problem: CoatedContact, profiles: Mapping[tuple[str, str, str], Pro
     for line in lines_of(problem):
         of = {(p.quantity, p.source): p for p in profiles.values() if p.line == line.name}
         source = next((source for quantity, source in of if quantity == "sigma_xx"), "")
-        stresses = [of.get((f"sigma_{component}", source)) for component in ("xx", "yy", "zz")]
-        if None in stresses:
+        stresses = [of.get((f"sigma_{component}", source)) for component in ("xx", "yy", "zz", "xz")]
+        if None in stresses[:3]:
             continue
-        xx, yy, zz = (p.value for p in stresses if p is not None)
-        shear = of.get(("sigma_xz", source))
-        xz = np.zeros_like(xx) if shear is None else shear.value
+        position = of["sigma_xx", source].position
+        sigma = np.stack([np.zeros_like(position) if p is None else p.value for p in stresses])
         seen = problem.seen_from(line.body)
-        z = line.points(of["sigma_xx", source].position)[2]
+        z = line.points(position)[2]
         # on an interface the upper side counts, as in the solutions
         layers = np.searchsorted(seen.interfaces, z) if line.layer is None else np.full(z.shape, line.layer)
         for k in np.unique(layers).tolist():
             E, nu = (*seen.coatings, seen.substrate)[k][:2]
-            s = np.stack([xx, yy, zz, xz])[:, layers == k]
-            place = line.body, k
-            found[place] = max(found.get(place, 0.0), float(largest_strain(s, E, nu).max()))
+            strain = float(largest_strain(sigma[:, layers == k], E, nu).max())
+            found[line.body, k] = max(found.get((line.body, k), 0.0), strain)
     for (body, k), strain in sorted(found.items()):
         count = len(problem.seen_from(body).coatings)
         layer = "substrate" if k == count else f"coating {k + 1}"

@@ -15,7 +15,7 @@ from verification.problem.coated_contact import CoatedContact, PrescribedLoad, S
 from verification.problem.line_profile import Profile
 from verification.problem.loading_curve import Problem
 from verification.problem.quantity import QUANTITIES
-from verification.running.case_result import CaseResult, SourceResult, diagnostics_of, message_of
+from verification.running.case_result import CaseResult, SourceResult, attempted
 from verification.sampling.point_values import values
 from verification.sources.loading_solution import Loading
 from verification.sources.source_record import Solver
@@ -34,21 +34,20 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
     outcomes: dict[str, SourceResult] = {}
     profiles = {(p.profile.quantity, p.profile.line, PUBLISHED): p.profile for p in case.columns}
     for source, solve in available.items():
-        begin = time.perf_counter()
-        try:
+        claimed = {(c.quantity, c.line) for c in case.claims if source in c.between}
+        items = [
+            item
+            for item in case.columns
+            if source in METHODS or (item.profile.quantity, item.profile.line) in claimed
+        ]
+
+        def solved(source: str = source, solve: Solver = solve, items: Any = items) -> Any:
             solution = solve(case.problem)
-            claimed = {(c.quantity, c.line) for c in case.claims if source in c.between}
-            found = [
-                _profile(solution, source, item, case)
-                for item in case.columns
-                if source in METHODS or (item.profile.quantity, item.profile.line) in claimed
-            ]
-        except Exception as error:  # a failed solve is a row of the report, whatever went wrong
-            outcomes[source] = SourceResult(source, time.perf_counter() - begin, message_of(error))
-            continue
-        seconds, budget = time.perf_counter() - begin, getattr(solution.uncertainty, "budget", ())
-        outcomes[source] = SourceResult(source, seconds, None, diagnostics_of(solution.diagnostics), budget)
-        profiles |= {(p.quantity, p.line, source): p for p in found}
+            found = [_profile(solution, source, item, case) for item in items]
+            profiles.update({(p.quantity, p.line, source): p for p in found})
+            return solution
+
+        _, outcomes[source] = attempted(source, solved)
     columns = {(p.profile.quantity, p.profile.line): p for p in case.columns}
     verdicts = []
     for claim in case.claims:
@@ -74,16 +73,12 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         profiles=tuple(profiles.values()),
         verdicts=tuple(verdicts),
         seconds=time.perf_counter() - started,
-        published=_published(case),
+        published=published(case),
     )
 
 
-def failed(case: PublishedCase, reason: str, seconds: float) -> CaseResult:
-    """The result of a case that could not be run at all: every claim NO_RESULT, for ``reason``."""
-    return CaseResult.failed(case, reason, seconds, published=_published(case))
-
-
-def _published(case: PublishedCase) -> dict[str, Any]:
+def published(case: PublishedCase) -> dict[str, Any]:
+    """Citation and columns of ``case``, as the report shows them."""
     return case.citation | {"columns": [_record(item) for item in case.columns]}
 
 

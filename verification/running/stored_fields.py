@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -52,11 +53,8 @@ def read_plane(path: Path, case_file: str) -> Plane:
 
     Raises StoreError where it is missing, damaged or of another case file.
     """
-    data = read_checked(path)
-    if (data.get("schema"), data.get("case_file")) != (PLANE, case_file):
-        raise StoreError(f"{path}: of another case file or version of this program; run the case again")
     try:
-        return decode(Plane, data.get("plane"))
+        return decode(Plane, _content(path, PLANE, case_file).get("plane"))
     except ValueError:
         raise StoreError(f"{path}: not a whole plane; it is damaged, run the case again") from None
 
@@ -110,10 +108,14 @@ def confirm_fields(folder: Path, name: str, case_file: str) -> None:
     Raises StoreError, naming the file, where one is missing, damaged or of another ``case_file``.
     """
     path = fields_path(folder, name)
-    data = read_checked(path)
-    if (data.get("schema"), data.get("case_file")) != (SCHEMA, case_file):
-        raise StoreError(f"{path}: of another case file or version of this program; run the case again")
-    for file, stated in data["files"].items():
+    for file, stated in _content(path, SCHEMA, case_file)["files"].items():
         place = path.parent / file
         if hashlib.sha256(read_bounded(place, MAX_BYTES)).hexdigest() != stated:
             raise StoreError(f"{place}: its checksum does not hold; run the case again with --fields")
+
+
+def _content(path: Path, schema: str, case_file: str) -> dict[str, Any]:
+    data = read_checked(path)
+    if (data.get("schema"), data.get("case_file")) != (schema, case_file):
+        raise StoreError(f"{path}: of another case file or version of this program; run the case again")
+    return data

@@ -19,7 +19,7 @@ from verification.sampling.largest_tension import BESIDE, ENDS, Search, around_e
 NEAR_EDGE = np.array([0.0, 1e-4, 1e-3, 1e-2])
 
 
-def sample_contact(solution: Solution, source: str, problem: CoatedContact) -> tuple[Profile, ...]:
+def sample_contact(solution: Solution, source: str) -> tuple[Profile, ...]:
     """Every scalar of the contact that the solution gives as a profile of one point [SI]."""
     found = []
     for name in (*SCALARS, *SLOPES):

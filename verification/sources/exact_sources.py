@@ -25,26 +25,15 @@ def solve_exactly(problem: Problem, numerics: Mapping[str, Any] | None = None) -
 
 
 def hertz(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> Any:
-    """Hertz's contact of the substrates."""
+    """Hertz's contact of the substrates, with friction Hamilton's."""
     from verification.sources.references.hertz import Hertz
     from verification.sources.references.hertz_ellipse import pressed_ellipsoid
 
     if problem.indenter is not None:
         along, across = problem.indenter[1]
         return pressed_ellipsoid(along, across, problem.load, *problem.substrate)
-    return Hertz(problem.radius, problem.load, *problem.substrate, ball=_bare_ball(problem))
-
-
-def hamilton(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> Any:
-    """Hamilton's sliding contact of the substrates."""
-    from verification.sources.references.hamilton import Hamilton
-
-    ball = _bare_ball(problem)
-    return Hamilton(problem.radius, problem.load, *problem.substrate, problem.friction, ball=ball)
-
-
-def _bare_ball(problem: CoatedContact) -> tuple[float, float] | None:
-    return None if problem.ball is None else problem.ball[:2]
+    ball = None if problem.ball is None else problem.ball[:2]
+    return Hertz(problem.radius, problem.load, *problem.substrate, problem.friction, ball=ball)
 
 
 def _exact_accepts(problem: Problem, kind: str) -> bool:
@@ -78,5 +67,5 @@ REFERENCE_SOURCES = (
         RESPONSE,
     ),
     Source("hertz", Kind.CLOSED, "Hertz", _CLOSED, hertz, _smooth, CODE),
-    Source("hamilton", Kind.CLOSED, "Hamilton", _CLOSED, hamilton, _sliding, CODE),
+    Source("hamilton", Kind.CLOSED, "Hamilton", _CLOSED, hertz, _sliding, CODE),
 )

@@ -124,7 +124,7 @@ def exact_loading(problem: LoadingCurve) -> Loading:
     rows, uncertainty = [], []
     for at in problem.at:
         a, fine = pressed_at(problem, at)
-        coarse = pressed(a, problem.coatings, problem.substrate, nodes=45, tail=30.0)
+        coarse = pressed(a, problem.coatings, problem.substrate, nodes=60, panel=12, tail=27.0)
         state, other = (_exact_state(problem, a, one) for one in (fine, coarse))
         rows.append(state)
         uncertainty.append(2 * np.abs(state - other) + 1e-12 * state)

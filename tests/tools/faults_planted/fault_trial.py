@@ -251,7 +251,7 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
 
 def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> list[Profile]:
     places = {profile.line: profile.position for profile in clean.profiles}
-    found = list(sample_contact(solution, source, case.problem))
+    found = list(sample_contact(solution, source))
     radii = [p for p in clean.profiles if (p.quantity, p.line) == ("contact_radius", "contact")]
     edge: float | Array = float(radii[-1].value[0])
     if case.problem.indenter is not None:

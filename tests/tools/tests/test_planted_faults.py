@@ -28,7 +28,7 @@ from verification.running.case_result import from_json as result_from_json
 from verification.running.case_result import to_json as result_to_json
 from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.sources import source_registry
-from verification.sources.references.hertz import Hertz, HertzContact
+from verification.sources.references.hertz import Hertz
 
 TOOLS = Path(__file__).parents[1]
 ALL = tuple((FAULTS | CONTROLS).values())
@@ -62,10 +62,10 @@ def test_a_plant_fits_the_source_and_leaves_no_trace(fault):
 
 def test_a_plant_is_taken_out_when_the_trial_fails():
     fault = FAULTS["hertz_exponent"]
-    original = vars(HertzContact)["contact_radius"]
+    original = vars(Hertz)["contact_radius"]
     with pytest.raises(RuntimeError), planted(fault.changes):
         raise RuntimeError("a trial that fails")
-    assert vars(HertzContact)["contact_radius"] is original
+    assert vars(Hertz)["contact_radius"] is original
 
 
 class OtherVariables(ast.NodeTransformer):
@@ -118,7 +118,7 @@ def test_what_a_trial_samples_with_has_the_fault_too():
 
 
 def test_two_edits_of_one_function_both_take():
-    approach = "verification.sources.references:HertzContact.approach"
+    approach = "verification.sources.references:Hertz.approach"
     first = Change(approach, "self.radius", "2 * self.radius")
     second = Change(approach, "self.contact_radius**2", "self.contact_radius**3")
     hertz = Hertz(1e-2, 20.0, 210e9, 0.3)

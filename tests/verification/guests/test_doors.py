@@ -95,7 +95,7 @@ def inside_verdicts(name, method, exam):
     solution = source.solve(case.problem, case.numerics.get(method, {}))
     places = {p.line: p.position for p in exam.profiles}
     edge = float(exam.profile_of["contact_radius", "contact", REFERENCE].value[0])
-    found = list(sample_contact(solution, method, case.problem))
+    found = list(sample_contact(solution, method))
     for line in case.lines:
         found += sample(solution, method, line, places[line.name], case.problem, edge)
     profiles = {(p.quantity, p.line, p.source): p for p in (*exam.profiles, *found)}

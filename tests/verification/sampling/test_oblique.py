@@ -8,14 +8,14 @@ from verification.problem.coated_contact import CoatedContact, keywords
 from verification.problem.line_profile import line_of, oblique_lines
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
 from verification.sampling import oblique_sampling
-from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
 
 STEEL = (210e9, 0.3)
 BARE = CoatedContact(10e-3, 20.0, (), STEEL, 0.25)
 A = BARE.a_h
 STACK = tuple((100e9 * k, 0.3, h * A) for k, h in ((1, 0.05), (4, 0.3), (2, 0.1), (6, 0.6), (3, 0.2)))
 NODES = 1.2 * A * np.linspace(-1, 1, 129)
-HAMILTON = Hamilton(10e-3, 20.0, *STEEL, 0.25)
+HAMILTON = Hertz(10e-3, 20.0, *STEEL, 0.25)
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.25])
@@ -54,7 +54,7 @@ def test_profiles_hold_the_six_stresses_and_three_displacements_of_their_points(
 
 
 def test_source_that_claims_no_displacement_has_no_profile_of_it():
-    class Stressed(Hamilton):
+    class Stressed(Hertz):
         displacement = None
 
     line = line_of("oblique", BARE)

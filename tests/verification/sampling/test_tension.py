@@ -15,7 +15,7 @@ from verification.sampling import largest_tension
 from verification.sampling.largest_tension import Search, Tension, edge_uncertainty
 from verification.sampling.line_sampling import positions, sample
 from verification.sources.exact_sources import solve_exactly
-from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
 
 STEEL, NU = 210e9, 0.3
 
@@ -30,7 +30,7 @@ def largest(solution, problem) -> Tension:
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.45])
 def test_tension_of_hamilton_peaks_at_the_trailing_edge(f, nu):
     problem = contact(substrate=(STEEL, nu), friction=f)
-    exact = Hamilton(problem.radius, problem.load, STEEL, nu, f)
+    exact = Hertz(problem.radius, problem.load, STEEL, nu, f)
     found = largest(exact, problem)
     # Johnson (3.43), Hamilton (1983)
     expected = exact.peak_pressure * ((1 - 2 * nu) / 3 + f * np.pi * (4 + nu) / 8)

@@ -5,13 +5,12 @@ import pytest
 
 from verification.problem.point_answers import Points
 from verification.sources.references import integral_equation
-from verification.sources.references.hamilton import Hamilton
 from verification.sources.references.hertz import Hertz
 
 R, W, STEEL, F = 10e-3, 20.0, (210e9, 0.3), 0.25
 E, NU = STEEL
 G = E / (2 * (1 + NU))
-SLIDING = Hamilton(R, W, E, NU, F)
+SLIDING = Hertz(R, W, E, NU, F)
 A = SLIDING.contact_radius
 
 

@@ -7,14 +7,13 @@ from verification.judging.standard_claims import sources_of
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.quantity import STRESSES, von_mises
 from verification.sources.references.axisymmetric_pressure import AbelPressure
-from verification.sources.references.hamilton import Hamilton
 from verification.sources.references.hankel_field import HankelField
 from verification.sources.references.hertz import Hertz
 
 
 @pytest.fixture
 def sliding():
-    return Hamilton(radius=10e-3, load=20.0, E=210e9, nu=0.3, friction=0.25)
+    return Hertz(radius=10e-3, load=20.0, E=210e9, nu=0.3, friction=0.25)
 
 
 def quadrature(sphere, friction):
@@ -27,7 +26,7 @@ def quadrature(sphere, friction):
 @pytest.mark.parametrize("nu", [-0.3, 0.0, 0.3, 0.5])
 @pytest.mark.parametrize("depth", [0.0, 1e-2, 0.5, 2.0, 10.0])
 def test_field_meets_hankel_quadrature_everywhere(nu, depth):
-    sphere = Hamilton(radius=10e-3, load=20.0, E=210e9, nu=nu, friction=1.0)
+    sphere = Hertz(radius=10e-3, load=20.0, E=210e9, nu=nu, friction=1.0)
     a = sphere.contact_radius
     random = np.random.default_rng(3).uniform(-4, 4, (2, 12))
     # The axis and its neighbourhood, where real forms divide by r, and the contact edge.
@@ -49,7 +48,7 @@ def test_hamilton_1983_shear_on_the_axis(sliding):
 
 @pytest.mark.parametrize(("friction", "first"), [(0.25, "below"), (0.35, "surface")])
 def test_hamilton_1983_first_yield_reaches_the_surface_at_friction_above_03(friction, first):
-    sphere = Hamilton(radius=10e-3, load=20.0, E=210e9, nu=0.3, friction=friction)
+    sphere = Hertz(radius=10e-3, load=20.0, E=210e9, nu=0.3, friction=friction)
     x, z = np.meshgrid(sphere.contact_radius * np.linspace(-1.2, 0.8, 41), [0.0, 0.3, 0.4, 0.5, 0.6])
     sigma = sphere.stress(x, 0.0, z * sphere.contact_radius)
     mises = von_mises(np.array([sigma[component] for component in STRESSES.values()]))
@@ -57,7 +56,7 @@ def test_hamilton_1983_first_yield_reaches_the_surface_at_friction_above_03(fric
 
 
 def test_without_friction_it_is_hertz():
-    sphere = Hamilton(radius=10e-3, load=20.0, E=210e9, nu=0.3, friction=0.0)
+    sphere = Hertz(radius=10e-3, load=20.0, E=210e9, nu=0.3, friction=0.0)
     hertz = Hertz(radius=10e-3, load=20.0, E=210e9, nu=0.3)
     point = np.array([0.3, -0.4, 0.5]) * hertz.contact_radius
     assert np.array_equal(sphere.stress(*point), hertz.stress(*point))

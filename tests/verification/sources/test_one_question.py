@@ -16,7 +16,7 @@ from verification.problem.either_body import on_body
 from verification.problem.point_answers import BALL, EDGE, FIELDS, Points, supported
 from verification.sources.limit_extrapolation import Extrapolated
 from verification.sources.references import integral_equation
-from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
 from verification.sources.references.hertz_ellipse import pressed_ellipsoid
 
 STEEL = (210e9, 0.3)
@@ -38,7 +38,7 @@ def sources():
         "patches": patches,
         "elements": elements,
         "integral equation": exact,
-        "closed form": Hamilton(PAIR.radius, PAIR.load, *STEEL, 0.2, ball=STEEL),
+        "closed form": Hertz(PAIR.radius, PAIR.load, *STEEL, 0.2, ball=STEEL),
         "extrapolation": Extrapolated(exact, exact, exact),
         "ball": on_body(patches, BALL),
         "another code": GuestFields({name: getattr(exact, name) for name in (*FIELDS, *SCALARS)}),
@@ -83,7 +83,7 @@ def test_what_a_closed_form_of_the_contact_alone_leaves_out_is_unsupported():
     assert ellipse.sample(Points(0.0), "pressure") == (ellipse.peak_pressure, 0.0)
     for quantity in ("stress", "displacement", "stiffness"):
         assert ellipse.sample(Points(0.0), quantity) == (None, None)
-    with pytest.raises(ValueError, match="PressedEllipsoid gives no stress"):
+    with pytest.raises(ValueError, match="HertzEllipse gives no stress"):
         supported(ellipse, Points(0.0), "stress")
 
 

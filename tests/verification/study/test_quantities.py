@@ -10,7 +10,7 @@ from synthetic_results import contact
 
 from verification.problem.coated_contact import CoatedContact
 from verification.sources.references import integral_equation
-from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
 from verification.study.largest_stresses import QUANTITIES, quantities, von_mises
 
 FRICTIONS = (0.0, 0.25, 0.5)
@@ -28,9 +28,9 @@ class Uncoated:
         return contact((210e9, NU, self.h), friction=1.0)
 
     @cached_property
-    def exact(self) -> Hamilton:
+    def exact(self) -> Hertz:
         p = self.problem
-        return Hamilton(p.radius, p.load, *p.substrate, 1.0)
+        return Hertz(p.radius, p.load, *p.substrate, 1.0)
 
     @cached_property
     def found(self):
@@ -109,7 +109,7 @@ def test_one_solution_with_unit_friction_speaks_for_every_other():
 def test_friction_of_a_frictionless_solution_is_refused():
     problem = contact((420e9, 0.25, 0.6))
     with pytest.raises(ValueError, match="friction=1"):
-        quantities(Hamilton(1e-2, 20.0, 210e9, 0.3, 0.5), problem, (0.25,))
+        quantities(Hertz(1e-2, 20.0, 210e9, 0.3, 0.5), problem, (0.25,))
 
 
 def test_residual_stress_adds_to_the_coating_alone(uncoated):

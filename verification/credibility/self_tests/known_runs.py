@@ -20,7 +20,7 @@ from verification.problem.line_profile import Profile
 from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.running.case_result import CaseResult, SourceResult
 from verification.running.contact_run import decide, judge_case, solve_case
-from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
 from verification.sources.source_registry import REFERENCES, sources_of
 
 # nu = 0: a = 1e-4 m, p0 = 6e9/pi Pa, approach = 1e-6 m
@@ -31,7 +31,7 @@ PROBLEM = CoatedContact(1e-2, 40.0, (), (3e11, 0.0), 0.25)
 def ran(others: Any = None, invariants: bool = False, **methods: Any) -> CaseResult:
     """The result with ``methods`` as given, the references by ``others`` or Hamilton."""
     case = Case("known", "known", PROBLEM, standard_claims(PROBLEM))
-    named = {name: others or Hamilton(*MATERIAL) for name in sources_of(PROBLEM) if name in REFERENCES}
+    named = {name: others or Hertz(*MATERIAL) for name in sources_of(PROBLEM) if name in REFERENCES}
     available = {name: (lambda p, _, s=s: s) for name, s in (methods | named).items()}
     return judge_case(case, solve_case(case, available), invariants=invariants)
 

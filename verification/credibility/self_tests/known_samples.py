@@ -32,7 +32,7 @@ PLACES = {
 
 def of_sampling() -> Answers:
     solution = cast(Solution, Labelled())
-    scalars = {p.quantity: p for p in sample_contact(solution, "known", PROBLEM)}
+    scalars = {p.quantity: p for p in sample_contact(solution, "known")}
     for name, value, U in (
         ("peak_pressure", 3e9, 2e6),
         ("contact_radius", 1e-4, 3e-9),

@@ -10,13 +10,13 @@ from numpy.typing import ArrayLike
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import Uncertainty
 from verification.problem.point_answers import FIELDS, FLAT, ByFunctions, Points
-from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
 
 Answers = Iterator[tuple[str, Any, Any]]  # what was asked, what the harness found, what it has to be
 
 
 @dataclass(frozen=True)
-class Stated(Hamilton):
+class Stated(Hertz):
     """Hamilton with an uncertainty, ``share`` of each number."""
 
     share: float = 1e-7

@@ -22,7 +22,7 @@ from verification.problem.either_body import on_body
 from verification.problem.gauss_legendre import gauss_legendre
 from verification.problem.point_answers import BALL, FLAT, Points
 from verification.problem.quantity import QUANTITIES, SCALARS
-from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
 from verification.sources.source_registry import METHODS, SOURCES
 
 Solve = Callable[[CoatedContact | PrescribedLoad], Solution]
@@ -122,7 +122,7 @@ def _equal_moduli(solve: Solve, source: str, problem: CoatedContact) -> Invarian
     if problem.ball is not None:
         ball = problem.ball[:2]
         same = replace(same, ball=(*ball, tuple((*ball, h) for _, _, h in problem.ball[2])))
-    exact = Hamilton(problem.radius, problem.load, *problem.substrate, problem.friction, ball=ball)
+    exact = Hertz(problem.radius, problem.load, *problem.substrate, problem.friction, ball=ball)
     found, U = _dimensionless(solve(same), same)
     known, _ = _dimensionless(exact, same)
     law = "coatings of the substrate's moduli give the closed form of the uncoated solid, over its scales"

@@ -6,7 +6,7 @@ Mechanics, ASME V&V 20-2009 for validation, and NASA-STD-7009B (2024), Standard 
 
 from collections.abc import Sequence
 
-from verification.cases.random_problems import FRICTION, MOST_COATINGS, POISSON, RATIO, THICKNESS, THINNEST
+from verification.cases.drawn_ranges import FRICTION, MOST_COATINGS, POISSON, RATIO, THICKNESS, THINNEST
 from verification.credibility.self_tests.known_verdicts import TEST
 from verification.evidence.alarm_record import DECADES
 from verification.evidence.code_record import shared

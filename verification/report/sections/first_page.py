@@ -9,7 +9,7 @@ from typing import Any
 
 from scipy.special import betaincinv
 
-from verification.cases.random_problems import MOST_COATINGS
+from verification.cases.drawn_ranges import MOST_COATINGS
 from verification.credibility.model_error import ASSUMPTIONS
 from verification.evidence.code_record import shared_functions
 from verification.evidence.first_notice import by_place, score

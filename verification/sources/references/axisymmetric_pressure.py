@@ -110,24 +110,31 @@ class AbelPressure:
 
         = int_0^min(r,a) phi(t) cos(order asin(t/r)) / sqrt(r^2 - t^2) dt, with t = r sin(psi).
         """
-        psi_max = np.arcsin(np.minimum(self.a / np.maximum(r, 1e-300), 1.0))
-        x, weight = gauss_legendre(max(64, 2 * self.c.size))
-        psi = 0.5 * psi_max[..., None] * (1 + x)
-        coefficients = np.zeros(2 * self.c.size - 1)
-        coefficients[::2] = self.c
-        phi = legendre.legval(np.minimum(r[..., None] * np.sin(psi) / self.a, 1.0), coefficients)
-        return 0.5 * psi_max * (phi * np.cos(order * psi) @ weight)
+        psi, weight, t = self._inside(r)
+        phi = legendre.legval(np.minimum(t / self.a, 1.0), self._even)
+        return (phi * np.cos(order * psi) * weight).sum(axis=-1)
 
     def bessel_integral(self, order: int, r: Array) -> Array:
         """int_0^inf phat(k) J_order(kr) k dk [Pa] for odd ``order``; shape of ``r``.
 
         = -int_0^min(r,a) phi'(t) sin(order asin(t/r)) / sqrt(r^2 - t^2) dt, with t = r sin(psi).
         """
-        psi_max = np.arcsin(np.minimum(self.a / np.maximum(r, 1e-300), 1.0))
+        psi, weight, t = self._inside(r)
+        return -(self._slope_over_t(t) * t * np.sin(order * psi) * weight).sum(axis=-1)
+
+    def _inside(self, r: Array) -> tuple[Array, Array, Array]:
+        """psi = asin(t/r), its weight, t of a quadrature over 0 < t < min(r, a) at each of ``r``."""
+        psi_max = np.arcsin(np.minimum(self.a / np.maximum(r, 1e-300), 1.0))[..., None]
         x, weight = gauss_legendre(max(64, 2 * self.c.size))
-        psi = 0.5 * psi_max[..., None] * (1 + x)
-        slope = self._slope_over_t(r[..., None] * np.sin(psi)) * r[..., None] * np.sin(psi)
-        return -0.5 * psi_max * (slope * np.sin(order * psi) @ weight)
+        psi = 0.5 * psi_max * (1 + x)
+        return psi, 0.5 * psi_max * weight, r[..., None] * np.sin(psi)
+
+    @property
+    def _even(self) -> Array:
+        """Coefficients of all Legendre polynomials, those of odd order 0."""
+        coefficients = np.zeros(2 * self.c.size - 1)
+        coefficients[::2] = self.c
+        return coefficients
 
     def _load_outside(self, r: Array) -> Array:
         """-int_r^a phi'(t) sqrt(t^2 - r^2) dt [N/rad], with s^2 = t^2 - r^2."""
@@ -139,9 +146,7 @@ class AbelPressure:
 
     def _slope_over_t(self, t: Array) -> Array:
         """phi'(t)/t, an even polynomial."""
-        coefficients = np.zeros(2 * self.c.size - 1)
-        coefficients[::2] = self.c
-        slope = legendre.legder(coefficients)
+        slope = legendre.legder(self._even)
         s = t / self.a
         # At t = 0 the quotient is phi''(0).
         small = s < 1e-6

@@ -13,13 +13,13 @@ slowly for quadrature, is taken in closed form from the Abel potential of the pr
 Sneddon, Fourier Transforms (1951); sliding derived by rotation of the wave vector's frame.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from math import factorial
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.special import j0, j1
 
 from verification.problem.array_types import Array, Coatings
@@ -53,23 +53,29 @@ class HankelField:
 
     def stress(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None) -> Array:
         """sigma[i, j, ...] [Pa], shape (3, 3) + points; ``layer`` as in ``layer_at``."""
-        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
-        layers = layer_at(z, self.coatings, layer)
-        sigma = np.zeros((3, 3, *x.shape))
-        r, theta = np.hypot(x, y), np.arctan2(y, x)
-        for here, depth, number in _planes(z, layers):
-            sigma[:, :, here] = self._plane(r[here], theta[here], depth, number)
-        return sigma
+        return self._by_planes(self._plane, (3, 3), x, y, z, layer)
 
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """u[i, ...] [m] towards infinity, shape (3,) + points."""
+        return self._by_planes(self._displaced, (3,), x, y, z, None)
+
+    def _by_planes(
+        self,
+        field: Callable[[Array, Array, float, int], Array],
+        axes: tuple[int, ...],
+        x: ArrayLike,
+        y: ArrayLike,
+        z: ArrayLike,
+        layer: int | None,
+    ) -> Array:
+        """Points of one depth and layer together, by ``field`` (r, theta, depth, layer)."""
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
-        layers = layer_at(z, self.coatings, None)
-        u = np.zeros((3, *x.shape))
-        r, theta = np.hypot(x, y), np.arctan2(y, x)
-        for here, depth, number in _planes(z, layers):
-            u[:, here] = self._displaced(r[here], theta[here], depth, number)
-        return u
+        layers = layer_at(z, self.coatings, layer)
+        found, r, theta = np.zeros((*axes, *x.shape)), np.hypot(x, y), np.arctan2(y, x)
+        for depth, number in set(zip(z.ravel().tolist(), layers.ravel().tolist(), strict=True)):
+            here = (z == depth) & (layers == number)
+            found[..., here] = field(r[here], theta[here], depth, number)
+        return found
 
     def _displaced(self, r: Array, theta: Array, z: float, layer: int) -> Array:
         u = np.zeros((3, r.size))
@@ -192,12 +198,6 @@ class HankelField:
             sigma[1, 0] = sigma[0, 1]
             sigma[0, 2] = sigma[2, 0] = -self.friction * p
         return sigma
-
-
-def _planes(z: Array, layers: NDArray[np.int_]) -> Iterator[tuple[NDArray[np.bool_], float, int]]:
-    """The points at each depth of each layer: where they are, the depth, the layer."""
-    for depth, layer in sorted(set(zip(z.ravel().tolist(), layers.ravel().tolist(), strict=True))):
-        yield (z == depth) & (layers == layer), depth, layer
 
 
 def bessel(k: Array, r: Array, highest: int) -> list[Array]:

@@ -1,4 +1,8 @@
-"""Hertz contact of a sphere, rigid or elastic, on a homogeneous elastic half-space.
+"""Hertz contact of a sphere, rigid or elastic, on a homogeneous elastic half-space, at rest or sliding.
+
+Friction q = f p in +x, on the ball in -x, leaves the pressure as it is (Goodman's assumption). The field of
+sliding is that of Hamilton, Proc. Inst. Mech. Engrs 197C (1983) 53-59, and Sackfield and Hills, J. Strain
+Anal. 18 (1983) 107-110, who write it in real terms.
 
 Axes: origin at first contact, ``z`` into the body in question. Stress is positive in tension, pressure
 positive in compression, hence sigma_zz = -p at z = 0. SI units.
@@ -20,7 +24,7 @@ give, from phat(k) = p0 (sin k - k cos k) / k^3,
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,8 +37,8 @@ Complex = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
-class HertzContact(ByFunctions):
-    """Sphere of ``radius`` [m] under ``load`` [N] on a solid of ``E`` [Pa], ``nu``: its size and pressure.
+class Hertz(ByFunctions):
+    """Sphere of ``radius`` [m] under ``load`` [N] on a solid of ``E`` [Pa], ``nu``; q = ``friction`` p.
 
     ball : (E [Pa], nu) of the sphere, None where it is rigid.
     Raises ValueError naming the quantity that is out of range.
@@ -44,7 +48,10 @@ class HertzContact(ByFunctions):
     load: float
     E: float
     nu: float
+    friction: float = 0.0
     ball: tuple[float, float] | None = field(default=None, kw_only=True)
+    uncertainty: ClassVar[Uncertainty] = Uncertainty()  # zero: exact
+    diagnostics: ClassVar[None] = None
 
     def __post_init__(self) -> None:
         for name in ("radius", "load", "E"):
@@ -54,6 +61,8 @@ class HertzContact(ByFunctions):
             raise ValueError(f"nu = {self.nu:g}; an isotropic solid has -1 < nu <= 0.5")
         if self.ball is not None and not (self.ball[0] > 0 and -1 < self.ball[1] <= 0.5):
             raise ValueError(f"ball = {self.ball}; Hertz needs E > 0 and -1 < nu <= 0.5")
+        if not (np.isfinite(self.friction) and self.friction >= 0):
+            raise ValueError(f"friction = {self.friction:g}; Coulomb's coefficient is zero or positive")
 
     @property
     def E_star(self) -> float:
@@ -62,14 +71,14 @@ class HertzContact(ByFunctions):
             return self.E / (1 - self.nu**2)
         return 1 / ((1 - self.nu**2) / self.E + (1 - self.ball[1] ** 2) / self.ball[0])
 
-    def seen_from(self, body: str) -> Self:
-        """The same contact with ``body`` as the solid. Raises ValueError where the ball is rigid."""
+    def _seen_from(self, body: str) -> tuple[Self, float]:
+        """The contact with ``body`` as the solid, and q/p on it. Raises ValueError where it is rigid."""
         if body == FLAT:
-            return self
+            return self, self.friction
         if body != BALL or self.ball is None:
             raise ValueError(f"body = {body!r}; this contact has an elastic {FLAT} alone")
         E, nu = self.ball
-        return replace(self, E=E, nu=nu, ball=(self.E, self.nu))
+        return replace(self, E=E, nu=nu, ball=(self.E, self.nu)), -self.friction
 
     @property
     def contact_radius(self) -> float:
@@ -91,68 +100,29 @@ class HertzContact(ByFunctions):
         """p0 = 3 W / (2 pi a^2) [Pa]. Johnson (4.24)."""
         return 3 * self.load / (2 * np.pi * self.contact_radius**2)
 
-    @property
-    def uncertainty(self) -> Uncertainty:
-        """Zero: exact."""
-        return Uncertainty()
-
-    @property
-    def diagnostics(self) -> Uncertainty:
-        """Nothing to report of a closed form."""
-        return Uncertainty()
-
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """p = p0 sqrt(1 - r^2/a^2) inside the contact, 0 outside [Pa]. Johnson (3.39)."""
         r = np.hypot(x, y)
         return self.peak_pressure * np.sqrt(np.maximum(1 - (r / self.contact_radius) ** 2, 0))
 
-    def _displaced(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, f: float) -> Array:
-        """Displacement [m] under p with q = f p in +x, (3,) + points. With c = p0 a (1 + nu)/E:
-
-            u_r = -c [(1 - 2 nu) C1 - z A1],    u_z = c [2 (1 - nu) C0 + z A0]
-            friction:  u_x = c f [(2 - nu) C0 - z A0 / 2 + (nu C2 + z A2 / 2) cos 2 theta],
-                u_y = c f (nu C2 + z A2 / 2) sin 2 theta,    u_z = c f [(1 - 2 nu) C1 + z A1] cos theta
-
-        Derived from the response of the half-space to each wave of p and q: Boussinesq and Cerruti, Johnson
-        (3.19), (3.75). Raises ValueError where z < 0.
-        """
-        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
-        if np.any(z < 0):
-            raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
-        a, nu, theta = self.contact_radius, self.nu, np.arctan2(y, x)
-        z = z / a
-        (A0, A1, A2, _), _, (C0, C1, C2) = integrals(np.hypot(x, y) / a, z)
-        u_r = -((1 - 2 * nu) * C1 - z * A1)
-        second = nu * C2 + z * A2 / 2
-        u = np.stack(
-            [
-                u_r * np.cos(theta) + f * ((2 - nu) * C0 - z * A0 / 2 + second * np.cos(2 * theta)),
-                u_r * np.sin(theta) + f * second * np.sin(2 * theta),
-                2 * (1 - nu) * C0 + z * A0 + f * ((1 - 2 * nu) * C1 + z * A1) * np.cos(theta),
-            ]
-        )
-        return self.peak_pressure * a * (1 + nu) / self.E * u
-
-
-class Hertz(HertzContact):
-    """Stress and displacement without friction."""
-
     def stress(
         self, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None = None, body: str = FLAT
     ) -> Array:
-        """sigma[i, j, ...] [Pa], shape (3, 3) + points. Huber (1904); on the surface Johnson (3.43).
-
-            w^2 = [r^2+z^2-a^2 + sqrt((r^2+z^2-a^2)^2 + 4 a^2 z^2)] / 2,   s = z/w
-            sigma_zz = -p0 s^3 a^2 w^2 / (w^4 + a^2 z^2)
-            sigma_rz = -p0 r z^2 a^2 w / ((w^4 + a^2 z^2) (a^2 + w^2))
+        """sigma[i, j, ...] [Pa], shape (3, 3) + points: that of the pressure and that of the friction.
 
         One material: ``layer`` is accepted and has no meaning here. Raises ValueError where z < 0.
         """
-        if body != FLAT:
-            return self.seen_from(body).stress(x, y, z)
-        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
-        if np.any(z < 0):
-            raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
+        contact, f = self._seen_from(body)
+        normal = contact._stress_of_pressure(*_below(x, y, z))
+        return normal + f * contact.stress_of_traction(x, y, z) if f else normal
+
+    def _stress_of_pressure(self, x: Array, y: Array, z: Array) -> Array:
+        """Stress without friction [Pa], shape (3, 3) + points. Huber (1904); on the surface Johnson (3.43).
+
+        w^2 = [r^2+z^2-a^2 + sqrt((r^2+z^2-a^2)^2 + 4 a^2 z^2)] / 2,   s = z/w
+        sigma_zz = -p0 s^3 a^2 w^2 / (w^4 + a^2 z^2)
+        sigma_rz = -p0 r z^2 a^2 w / ((w^4 + a^2 z^2) (a^2 + w^2))
+        """
         a, p0, nu = self.contact_radius, self.peak_pressure, self.nu
         r, theta = np.hypot(x, y) / a, np.arctan2(y, x)
         z = z / a
@@ -183,9 +153,65 @@ class Hertz(HertzContact):
         sigma[1, 2] = sigma[2, 1] = p0 * shear * np.sin(theta)
         return sigma
 
+    def stress_of_traction(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """Stress under q = p in +x alone, without the pressure [Pa], shape (3, 3) + points.
+
+            sigma_xx = -[(2 + nu/2) A1 - 3/4 B1] cos theta - [nu/2 A3 + 1/4 B3] cos 3 theta
+            sigma_yy = -[(3 nu/2) A1 - 1/4 B1] cos theta   + [nu/2 A3 + 1/4 B3] cos 3 theta
+            sigma_xy = -[(1 - nu/2) A1 - 1/4 B1] sin theta - [nu/2 A3 + 1/4 B3] sin 3 theta
+            sigma_zz = -B1 cos theta
+            sigma_xz = -[A0 - 1/2 B0] - 1/2 B2 cos 2 theta,   sigma_yz = -1/2 B2 sin 2 theta
+
+        Derived from the response of the half-space to each wave of q. Raises ValueError where z < 0.
+        """
+        x, y, z = _below(x, y, z)
+        a, nu = self.contact_radius, self.nu
+        theta = np.arctan2(y, x)
+        (A0, A1, _, A3), (B0, B1, B2, B3), _ = integrals(np.hypot(x, y) / a, z / a)
+        third = nu / 2 * A3 + B3 / 4
+        sigma = np.zeros((3, 3, *x.shape))
+        sigma[0, 0] = -((2 + nu / 2) * A1 - 0.75 * B1) * np.cos(theta) - third * np.cos(3 * theta)
+        sigma[1, 1] = -(1.5 * nu * A1 - 0.25 * B1) * np.cos(theta) + third * np.cos(3 * theta)
+        sigma[0, 1] = -((1 - nu / 2) * A1 - 0.25 * B1) * np.sin(theta) - third * np.sin(3 * theta)
+        sigma[2, 2] = -B1 * np.cos(theta)
+        sigma[0, 2] = -(A0 - 0.5 * B0) - 0.5 * B2 * np.cos(2 * theta)
+        sigma[1, 2] = -0.5 * B2 * np.sin(2 * theta)
+        for i, j in ((1, 0), (2, 0), (2, 1)):
+            sigma[i, j] = sigma[j, i]
+        return self.peak_pressure * sigma
+
     def displacement(self, x: ArrayLike, y: ArrayLike, z: ArrayLike, body: str = FLAT) -> Array:
-        """u[i, ...] [m] towards points at infinity, shape (3,) + points. Raises ValueError where z < 0."""
-        return self.seen_from(body)._displaced(x, y, z, 0.0)
+        """u[i, ...] [m] towards points at infinity, shape (3,) + points. With c = p0 a (1 + nu)/E:
+
+            u_r = -c [(1 - 2 nu) C1 - z A1],    u_z = c [2 (1 - nu) C0 + z A0]
+            friction:  u_x = c f [(2 - nu) C0 - z A0 / 2 + (nu C2 + z A2 / 2) cos 2 theta],
+                u_y = c f (nu C2 + z A2 / 2) sin 2 theta,    u_z = c f [(1 - 2 nu) C1 + z A1] cos theta
+
+        Derived from the response of the half-space to each wave of p and q: Boussinesq and Cerruti, Johnson
+        (3.19), (3.75). Raises ValueError where z < 0.
+        """
+        (contact, f), (x, y, z) = self._seen_from(body), _below(x, y, z)
+        a, nu, theta = contact.contact_radius, contact.nu, np.arctan2(y, x)
+        z = z / a
+        (A0, A1, A2, _), _, (C0, C1, C2) = integrals(np.hypot(x, y) / a, z)
+        u_r = -((1 - 2 * nu) * C1 - z * A1)
+        second = nu * C2 + z * A2 / 2
+        u = np.stack(
+            [
+                u_r * np.cos(theta) + f * ((2 - nu) * C0 - z * A0 / 2 + second * np.cos(2 * theta)),
+                u_r * np.sin(theta) + f * second * np.sin(2 * theta),
+                2 * (1 - nu) * C0 + z * A0 + f * ((1 - 2 * nu) * C1 + z * A1) * np.cos(theta),
+            ]
+        )
+        return contact.peak_pressure * a * (1 + nu) / contact.E * u
+
+
+def _below(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> tuple[Array, ...]:
+    """Points as arrays of one shape. Raises ValueError where z < 0."""
+    x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
+    if np.any(z < 0):
+        raise ValueError(f"z = {np.min(z):g} m is above the surface; depth counts down from 0")
+    return x, y, z
 
 
 def integrals(r: Array, z: Array) -> tuple[list[Array], list[Array], list[Array]]:

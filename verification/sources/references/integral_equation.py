@@ -185,53 +185,72 @@ def solve(
     one below ``gap.widest``.
     """
     solids = solids_of(coatings, substrate, ball)
-    fine = _solve(radius, load, solids, friction, gap, beyond, nodes, panel, tail)
+    guess = radius_estimate(radius, load, combined_modulus(solids), solids)
+
+    def solved(nodes: int, panel: int, tail: float) -> ExactSolution:
+        equation = Equation(radius, solids, guess, nodes, panel, tail, gap, beyond)
+        return _under_load(equation, load, friction, panel, tail)
+
+    fine = solved(nodes, panel, tail)
     if not estimate_uncertainty:
         return fine
-    coarse = _solve(radius, load, solids, friction, gap, beyond, 3 * nodes // 4, 3 * panel // 4, 0.75 * tail)
-    return replace(fine, coarser=coarse)
+    return replace(fine, coarser=solved(3 * nodes // 4, 3 * panel // 4, 0.75 * tail))
 
 
-def _solve(
-    radius: float,
-    load: float,
-    solids: tuple[Solid, ...],
-    friction: float,
-    gap: Gap,
-    beyond: Beyond | None,
-    nodes: int,
-    panel: int,
-    tail: float,
-) -> ExactSolution:
-    """Contact of the flat with a rigid ball, or of the two ``solids``, flat and ball."""
-    E_star = combined_modulus(solids)
-    guess = radius_estimate(radius, load, E_star, solids)
-    x_i, w_i = gauss_legendre(_contact_nodes(nodes, guess, solids))
-    s, weight = 0.5 * (1 + x_i), 0.5 * w_i
-    k, k_weight = kernel_wavenumbers(solids, guess, panel, tail)
-    # wavenumbers go as 1/a, so that cos(kx) is that of every radius
-    cosine = np.cos(np.multiply.outer(k * guess, np.append(s, 1.0)))
+class Equation:
+    """The integral equation of a sphere of ``radius`` [m] on the ``solids``, flat and ball, discretised.
 
-    @cache  # the root that is found was asked for before
-    def contact(a: float) -> tuple[Array, float, float]:
-        x, shrink = a * s, guess / a
-        kernel = shrink * k_weight * (compliance(solids, E_star, shrink * k) - 1)
-        K = (2 / np.pi) * (cosine.T * kernel) @ cosine
-        if beyond is not None:
-            K += E_star / np.pi * beyond(np.append(x, a))
-        A = np.eye(x.size) + K[:-1, :-1] * (a * weight)
-        right = (E_star / np.pi) * np.stack([np.ones_like(x), gap.transform(x, radius)], axis=1)
+    guess : contact radius [m] that the quadratures are fitted to.   Others as of ``solve``.
+    """
+
+    def __init__(
+        self,
+        radius: float,
+        solids: tuple[Solid, ...],
+        guess: float,
+        nodes: int,
+        panel: int,
+        tail: float,
+        gap: Gap = PARABOLA,
+        beyond: Beyond | None = None,
+    ) -> None:
+        self.radius, self.solids, self.guess, self.gap, self.beyond = radius, solids, guess, gap, beyond
+        self.E_star = combined_modulus(solids)
+        x, w = gauss_legendre(_contact_nodes(nodes, guess, solids))
+        self.s, self.weight = 0.5 * (1 + x), 0.5 * w
+        self.k, self.k_weight = kernel_wavenumbers(solids, guess, panel, tail)
+        # wavenumbers go as 1/a, so that cos(kx) is that of every radius
+        self.cosine = np.cos(np.multiply.outer(self.k * guess, np.append(self.s, 1.0)))
+        self.at = cache(self._at)  # the root that is found was asked for before
+
+    def _at(self, a: float) -> tuple[Array, float, float]:
+        """phi at the nodes, approach, stiffness of contact radius ``a`` [m]."""
+        x, shrink, unit = a * self.s, self.guess / a, self.E_star / np.pi
+        kernel = shrink * self.k_weight * (compliance(self.solids, self.E_star, shrink * self.k) - 1)
+        K = (2 / np.pi) * (self.cosine.T * kernel) @ self.cosine
+        if self.beyond is not None:
+            K += unit * self.beyond(np.append(x, a))
+        A = np.eye(x.size) + K[:-1, :-1] * (a * self.weight)
+        right = unit * np.stack([np.ones_like(x), self.gap.transform(x, self.radius)], axis=1)
         phi = np.linalg.solve(A, right)
-        at_edge = float(gap.transform(a, radius))
+        at_edge = float(self.gap.transform(a, self.radius))
         # Nystrom's interpolation gives phi at the edge, where it must vanish.
-        edge = (E_star / np.pi) * np.array([1.0, at_edge]) - (K[-1, :-1] * a * weight) @ phi
+        edge = unit * np.array([1.0, at_edge]) - (K[-1, :-1] * a * self.weight) @ phi
         delta = edge[1] / edge[0]
-        stiffness = 2 * np.pi * a * (weight @ phi[:, 0])
-        return phi @ np.array([delta, -1.0]), float(delta), float(stiffness)
+        return phi @ np.array([delta, -1.0]), float(delta), self.load(a, phi[:, 0])
+
+    def load(self, a: float, phi: Array) -> float:
+        """2 pi int_0^a phi dt [N]."""
+        return float(2 * np.pi * a * (self.weight @ phi))
+
+
+def _under_load(equation: Equation, load: float, friction: float, panel: int, tail: float) -> ExactSolution:
+    """The contact whose radius carries ``load``."""
+    guess, gap, radius = equation.guess, equation.gap, equation.radius
 
     def excess(log_a: float) -> float:
         a = float(np.exp(log_a))
-        carried = float(2 * np.pi * a * (weight @ contact(a)[0]))
+        carried = equation.load(a, equation.at(a)[0])
         if not carried > 0:
             raise ValueError(
                 f"{load:g} N on a = {a:g} m: the layers' compliance loses its digits; check the moduli"
@@ -250,14 +269,14 @@ def _solve(
             f"load = {load:g} N is carried by no contact radius near {guess:g} m; check the moduli"
         )
     a = float(np.exp(brentq(excess, low, high, xtol=1e-15, rtol=1e-14)))
-    phi, delta, stiffness = contact(a)
-    abel = AbelPressure.from_nodes(a, s, weight, phi)
+    phi, delta, stiffness = equation.at(a)
+    abel = AbelPressure.from_nodes(a, equation.s, equation.weight, phi)
     # the traction on the ball is -q
     fields = tuple(
         HankelField(abel, *solid, sign * friction, panel, tail)
-        for solid, sign in zip(solids, (1.0, -1.0), strict=False)
+        for solid, sign in zip(equation.solids, (1.0, -1.0), strict=False)
     )
-    diagnostics = ExactDiagnostics(s.size, k.size, abs(abel.load / load - 1))
+    diagnostics = ExactDiagnostics(equation.s.size, equation.k.size, abs(abel.load / load - 1))
     return ExactSolution(abel, delta, fields, diagnostics, stiffness)
 
 

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from verification.sources.references.hamilton import Hamilton
+from verification.sources.references.hertz import Hertz
 
 
 def solve(radius, load, substrate, friction):
     """Hamilton's sliding contact, with the slips of an afternoon."""
     E, nu = substrate
-    right = Hamilton(radius, load, E, nu, friction)
+    right = Hertz(radius, load, E, nu, friction)
     # 1. E in place of E* = E/(1 - nu^2) makes the contact too large.
     a = (3 * load * radius / (4 * E)) ** (1 / 3)
 

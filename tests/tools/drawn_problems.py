@@ -12,18 +12,19 @@ from math import log
 
 import numpy as np
 
-# Ranges of the problems.
-RATIO = (0.02, 50.0)  # E_i / E of the substrate, of every coating
-THICKNESS = (0.02, 10.0)  # h / a_h, of each coating or of all together
-THINNEST = 0.02  # h / a_h of a coating where THICKNESS is that of all together
-POISSON = (0.0, 0.49)  # of every layer
-FRICTION = (0.0, 0.8)
-MOST_COATINGS = 5
-# Of problems of thin films alone, under a ball without coatings.
-FILM_RATIO = (0.1, 10.0)
-FILM_THICKNESS = (0.001, 0.02)  # h / a_h
-OVER_INTERLAYER = (0.001, 0.2)  # h / a_h of the outer of two
-MOST_FILMS = 2
+from verification.cases.drawn_ranges import (
+    FILM_RATIO,
+    FILM_THICKNESS,
+    FRICTION,
+    MOST_COATINGS,
+    MOST_FILMS,
+    OVER_INTERLAYER,
+    POISSON,
+    RATIO,
+    THICKNESS,
+    THINNEST,
+)
+
 # Of ellipses on one coating.
 ELONGATION = (1.5, 4.0)  # about the ratio of the axes; that of the radii to the power 1.5
 CLOSE_RATIO = (0.25, 4.0)  # E1/E2

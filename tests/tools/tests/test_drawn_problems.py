@@ -2,19 +2,11 @@
 
 from pathlib import Path
 
+from drawn_problems import draw, draw_ellipse
 from synthetic_results import STEEL
 
 from verification.cases.case_file import Case, parse_case
-from verification.cases.random_problems import (
-    FRICTION,
-    MOST_COATINGS,
-    POISSON,
-    RATIO,
-    THICKNESS,
-    THINNEST,
-    draw,
-    draw_ellipse,
-)
+from verification.cases.drawn_ranges import FRICTION, MOST_COATINGS, POISSON, RATIO, THICKNESS, THINNEST
 from verification.desk.stack_text import outside_verified
 from verification.judging.standard_claims import standard_claims
 
