@@ -51,10 +51,15 @@ def solve(case: "Case | CoatedContact", source: str = "semianalytic", **numerics
     from verification.problem.coated_contact import CoatedContact
     from verification.sources.source_registry import solvers
 
-    problem, given = (case, {}) if isinstance(case, CoatedContact) else (case.problem, case.keywords(source))
+    if isinstance(case, CoatedContact):
+        problem = case
+    else:
+        from verification.running.contact_run import keywords_of
+
+        problem, numerics = case.problem, {**keywords_of(case, source), **numerics}
     if source not in (known := solvers(problem)):
         raise ValueError(f"source = {source!r}; this problem is solved by {', '.join(known)}")
-    return known[source](problem, {**given, **numerics})
+    return known[source](problem, numerics)
 
 
 def compare(case: "Case") -> "CaseResult":

@@ -38,7 +38,7 @@ from verification.judging.verdict import Claim
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.display_units import Units
 from verification.problem.indenter_shape import Indenter
-from verification.problem.line_profile import Line, line_of, lines_of, oblique_lines
+from verification.problem.line_profile import line_of
 from verification.problem.point_answers import BALL, FLAT
 from verification.sources.load_of_approach import load_of_approach, own_radius
 from verification.sources.source_registry import METHODS, sources_of
@@ -80,16 +80,6 @@ class Case:
     courses: dict[str, tuple[str, ...]] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     approach: float | None = None
-
-    def keywords(self, source: str) -> dict[str, Any]:
-        """Those of ``source`` besides the problem; the semi-analytical method presses by a given approach."""
-        stated = {} if self.approach is None or source != METHODS[0] else {"approach": self.approach}
-        return self.numerics.get(source, {}) | stated
-
-    @property
-    def lines(self) -> tuple[Line, ...]:
-        """The lines on which sources are compared: those of the plane y = 0, then the others."""
-        return lines_of(self.problem) + oblique_lines(self.problem)
 
 
 class IndenterEntry(Strict):
@@ -171,25 +161,28 @@ class _Problem(Sized):
             )
         return self
 
+    @property
+    def bodies(self) -> dict[str, tuple[Material, list[WholeCoating]]]:
+        """Each body with its coatings."""
+        ball = {BALL: (self.ball, self.ball.coatings)} if self.ball else {}
+        return {FLAT: (self.substrate, self.coatings), **ball}
+
     def graded(self) -> dict[str, list[WholeCoating]]:
         """The coatings by body; {} where none of them is graded."""
-        bodies = {FLAT: self.coatings} | ({BALL: self.ball.coatings} if self.ball else {})
-        return bodies if any(c.layers for coatings in bodies.values() for c in coatings) else {}
+        found = {body: coatings for body, (_, coatings) in self.bodies.items()}
+        return found if any(c.layers for coatings in found.values() for c in coatings) else {}
 
     def residual(self, over: int = 1) -> dict[str, tuple[float, ...]]:
         """Residual stress [Pa] of each sub-layer of the coatings by body; {} where there is none.
 
         Raises ValueError naming the coating whose residual stress is not determined.
         """
-        bodies = {FLAT: (self.substrate.expansion, self.coatings)}
-        if self.ball:
-            bodies[BALL] = (self.ball.expansion, self.ball.coatings)
         found = {}
-        for body, (below, coatings) in bodies.items():
+        for body, (solid, coatings) in self.bodies.items():
+            below, stresses = solid.expansion, []
             if below is not None and all(c.expansion is None for c in coatings):
                 key = BALL if body == BALL else "substrate"
                 raise ValueError(f"{key}.expansion acts on no coating: give that of one, or leave it out")
-            stresses = []
             for i, coating in enumerate(coatings):
                 try:
                     for E in coating.moduli(over):
@@ -221,15 +214,17 @@ class _Problem(Sized):
 
     def names(self) -> dict[str, tuple[str, ...]]:
         """Names of the coatings of each body, then of the body itself."""
-        found = {FLAT: (*(c.name for c in self.coatings), self.substrate.name)}
-        if self.ball:
-            found[BALL] = (*(c.name for c in self.ball.coatings), self.ball.name)
-        return found
+        return {
+            body: (*(c.name for c in coatings), solid.name) for body, (solid, coatings) in self.bodies.items()
+        }
 
     def limits(self) -> dict[str, float]:
         """Hardness and yield strength [Pa] of every material that has one, by their keys."""
-        ball = self.ball.all_limits() if self.ball else {}
-        return self.substrate.limits("substrate") | limits_of(self.coatings, "coatings") | ball
+        found: dict[str, float] = {}
+        for body, (solid, coatings) in self.bodies.items():
+            found |= solid.limits(BALL if body == BALL else "substrate")
+            found |= limits_of(coatings, f"{before(body)}coatings")
+        return found
 
 
 class _Claim(Strict):

@@ -111,6 +111,11 @@ def lines_of(problem: CoatedContact) -> tuple[Line, ...]:
     return tuple(line_of(name, problem) for name in names)
 
 
+def all_lines(problem: CoatedContact) -> tuple[Line, ...]:
+    """The lines on which sources are compared: those of the plane y = 0, then the others."""
+    return lines_of(problem) + oblique_lines(problem)
+
+
 def oblique_lines(problem: CoatedContact) -> tuple[Line, ...]:
     """Lines off the plane y = 0, which have all six stresses and all three displacements; of each body.
 

@@ -105,10 +105,10 @@ class RunInfo:
 
 def to_json(result: CaseResult) -> dict[str, Any]:
     """``result`` as strict JSON, with its outcome."""
-    data = encode(result)
+    outcome, data = result.outcome, encode(result)
     verdicts = [{"claim": claim, "verdict": verdict} for claim, verdict in data["verdicts"]]
     data |= {"verdicts": verdicts, "case_file": data.pop("text")}
-    return {"schema": SCHEMA, "outcome": result.outcome} | data
+    return {"schema": SCHEMA, "outcome": outcome} | data
 
 
 def from_json(data: dict[str, Any]) -> CaseResult:

@@ -13,14 +13,13 @@ from typing import Any
 from verification.cases.case_file import Case
 from verification.cases.published_file import PublishedCase
 from verification.judging.verdict import Outcome
+from verification.running import published_run
 from verification.running.case_result import CaseResult, describe, from_json, to_json
 from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.running.contact_run import judge_case, solve_case
 from verification.running.json_records import plain
 from verification.running.pool.pool_task import Task
 from verification.running.provenance import fingerprint
-from verification.running.published_run import published
-from verification.running.published_run import run as run_published
 from verification.running.slicing import slicing_remarks
 from verification.running.stored_fields import (
     confirm_fields,
@@ -49,10 +48,7 @@ def case_task(case: Case | PublishedCase, folder: Path, *, fields: bool = False)
     """
     path, read = result_path(folder, case), partial(_of, case)
     if not isinstance(case, Case):
-        work, lost = (
-            partial(solve_and_store_published, case, path),
-            partial(CaseResult.failed, case, published=published(case)),
-        )
+        work, lost = (partial(solve_and_store_published, case, path), partial(published_run.failed, case))
         return Task(case.name, work, path, read, lost, cost=1.0, ahead=_METHOD_PACKAGES)
     work = partial(solve_and_store, case, path, plane_path(folder, case.name), folder if fields else None)
     alike = repr((replace(case.problem, friction=0.0), case.approach, sorted(case.numerics.items())))
@@ -93,7 +89,7 @@ def solve_and_store(case: Case, path: Path, plane: Path, directory: Path | None 
 
 def solve_and_store_published(case: PublishedCase, path: Path) -> None:
     """Solve a published ``case`` and store its result at ``path``."""
-    result = run_published(case)
+    result = published_run.run(case)
     write_checked(path, to_json(result) | {"made_by": fingerprint()})
 
 

@@ -4,6 +4,7 @@ import time
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -13,13 +14,13 @@ from verification.judging.invariants import Invariant, check, resolved
 from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, Solution
-from verification.problem.line_profile import Profile, lines_of
+from verification.problem.line_profile import Profile, all_lines, lines_of
 from verification.problem.point_answers import FLAT
 from verification.problem.quantity import QUANTITIES, SCALARS, largest_strain
 from verification.running.case_result import CaseResult, SourceResult, attempted, message_of
 from verification.sampling.line_sampling import edge_of, ends_of, positions, sample, sample_contact
 from verification.sources.source_record import Solver
-from verification.sources.source_registry import solvers, sources_of
+from verification.sources.source_registry import METHODS, solvers, sources_of
 
 
 def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult:
@@ -56,8 +57,14 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
     return Solved(solutions, outcomes, resolved(case.problem, available) if case.resolve else ())
 
 
+def keywords_of(case: Case, source: str) -> dict[str, Any]:
+    """Those of ``source`` besides the problem; the semi-analytical method presses by a given approach."""
+    stated = {} if case.approach is None or source != METHODS[0] else {"approach": case.approach}
+    return case.numerics.get(source, {}) | stated
+
+
 def _solved(case: Case, source: str, solve: Solver) -> Solution:
-    solution: Solution = solve(case.problem, case.keywords(source))
+    solution: Solution = solve(case.problem, keywords_of(case, source))
     for name in SCALARS:
         if not np.isfinite(value := solution.sample(None, name, False).value):
             raise ValueError(f"{name} = {value}; the solution is not finite")
@@ -72,7 +79,8 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
     started = time.perf_counter()
     solutions, outcomes = dict(solved.solutions), dict(solved.outcomes)
     profiles: dict[tuple[str, str, str], Profile] = {}
-    places = positions(case.problem, case.lines, solutions) if solutions else {}
+    lines = all_lines(case.problem)
+    places = positions(case.problem, lines, solutions) if solutions else {}
     edge: float | Array | None = None
     if solutions:
         shaped = case.problem.indenter is not None
@@ -81,7 +89,7 @@ def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseRe
         begin, old = time.perf_counter(), outcomes[source]
         try:
             found = list(sample_contact(solution, source))
-            for line in case.lines if source in sources_of(case.problem) else ():
+            for line in lines if source in sources_of(case.problem) else ():
                 found += sample(solution, source, line, places[line], case.problem, edge)
         except Exception as error:  # any failed source is a row of the report
             outcomes[source] = SourceResult(source, old.seconds, message_of(error))

@@ -73,12 +73,16 @@ def run(case: PublishedCase, available: Mapping[str, Solver] | None = None) -> C
         profiles=tuple(profiles.values()),
         verdicts=tuple(verdicts),
         seconds=time.perf_counter() - started,
-        published=published(case),
+        published=_published(case),
     )
 
 
-def published(case: PublishedCase) -> dict[str, Any]:
-    """Citation and columns of ``case``, as the report shows them."""
+def failed(case: PublishedCase, reason: str, seconds: float) -> CaseResult:
+    """The result of a case that could not be run at all: every claim NO_RESULT, for ``reason``."""
+    return CaseResult.failed(case, reason, seconds, published=_published(case))
+
+
+def _published(case: PublishedCase) -> dict[str, Any]:
     return case.citation | {"columns": [_record(item) for item in case.columns]}
 
 

@@ -20,7 +20,7 @@ from verification.judging.invariants.resolved_invariants import NAMES
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import Solution
-from verification.problem.line_profile import EDGE_LINE, Profile
+from verification.problem.line_profile import EDGE_LINE, Profile, all_lines
 from verification.problem.quantity import DISPLACEMENTS
 from verification.regression.baseline_change import State, drift, measured
 from verification.regression.manifest import Difference, differences, manifest_message, manifest_of
@@ -256,7 +256,7 @@ def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> 
     edge: float | Array = float(radii[-1].value[0])
     if case.problem.indenter is not None:
         edge = places[EDGE_LINE][ENDS]
-    for line in case.lines:
+    for line in all_lines(case.problem):
         found += sample(solution, source, line, places[line.name], case.problem, edge)
     return found
 

@@ -35,16 +35,6 @@ def test_courses_at_the_middle_of_each_sub_layer():
     assert moduli(3e11, 1) == (3e11,)
 
 
-def test_mean_modulus_converges_with_the_square_of_the_sub_layers():
-    exact = (4e11 - 1e11) / np.log(4)
-    errors = [
-        abs(np.mean(moduli(Course(course="exponential", top=4e11, base=1e11), n)) / exact - 1)
-        for n in (5, 10, 20)
-    ]
-    assert errors[0] / errors[1] == pytest.approx(4, rel=0.02)
-    assert errors[1] / errors[2] == pytest.approx(4, rel=0.02)
-
-
 def test_a_graded_coating_is_its_sub_layers_of_one_thickness():
     case = parse(TEXT)
     assert case.layers == {"flat": (30, 1)}

@@ -13,7 +13,6 @@ from pint import UnitRegistry
 from verification.cases.case_file import parse_case
 from verification.cases.toml_file import CaseError
 from verification.cases.unit_numbers import METRIC
-from verification.study.study_plan import parse_study
 
 BARE = case_text("E = 450e9; nu = 0.22; thickness = 3e-6")
 PREFIXES = {"": 0, "n": -9, "u": -6, "µ": -6, "μ": -6, "m": -3, "k": 3, "M": 6, "G": 9}
@@ -115,29 +114,6 @@ def test_messages_name_key_and_unit(key, text, message):
         parse(with_text(key, text))
     assert str(error.value).startswith(f"mine.toml: {KEYS[key]} ")
     assert message in str(error.value)
-
-
-STUDY = """
-title = "DLC"
-[problem]
-radius = "10 mm"
-load = "20 N"
-substrate = { E = "210 GPa", nu = 0.3 }
-coating = { E = "180 GPa", nu = 0.2 }
-[sweep]
-thickness = { from = "1 um", to = "0.01 mm", count = 3 }
-[criteria.strength]
-sigma_xx_surface = "2.5 GPa"
-"""
-
-
-def test_study_files_have_units():
-    study = parse_study(STUDY.encode(), Path("dlc.toml"))
-    assert (study.radius, study.load, study.substrate, study.moduli) == (0.01, 20.0, (210e9, 0.3), (180e9,))
-    assert (study.thicknesses[0], study.thicknesses[-1]) == (1e-6, 1e-5)
-    assert study.criteria.strengths(1.0) == {"sigma_xx_surface": 2.5e9}
-    listed = STUDY.replace('{ from = "1 um", to = "0.01 mm", count = 3 }', '["1 um", 2e-6]')
-    assert parse_study(listed.encode(), Path("dlc.toml")).thicknesses == (1e-6, 2e-6)
 
 
 @pytest.mark.parametrize(("unit", "name"), [(unit, name) for unit, names in METRIC.items() for name in names])

@@ -16,6 +16,7 @@ from verification.cases.toml_file import CaseError
 from verification.desk.contact_answer import answer
 from verification.desk.stack_text import described
 from verification.problem.coated_contact import CoatedContact
+from verification.running.contact_run import keywords_of
 from verification.sources.exact_sources import solve_exactly
 from verification.sources.source_registry import METHODS
 
@@ -68,8 +69,8 @@ def test_a_problem_stated_by_its_approach_is_that_of_the_load_found(number):
     assert (same.problem, same.warnings) == (problem, given.warnings)
     assert [line for line in described(given) if "given approach" not in line] == described(same)
     # Each method is pressed by one of them: the semi-analytical one by the approach, in a run.
-    assert given.keywords(METHODS[0]) == {"approach": approach}
-    assert given.keywords(METHODS[1]) == same.keywords(METHODS[0]) == {}
+    assert keywords_of(given, METHODS[0]) == {"approach": approach}
+    assert keywords_of(given, METHODS[1]) == keywords_of(same, METHODS[0]) == {}
 
 
 def test_the_shipped_case_has_its_load_again():

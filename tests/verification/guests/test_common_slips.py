@@ -10,6 +10,7 @@ import pytest
 from guest_exams import prepared, slips_of
 
 from verification.guests.exam_subjects import REFERENCE
+from verification.problem.line_profile import all_lines
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
 from verification.sampling.line_sampling import sample, sample_contact
 from verification.sources.exact_sources import solve_exactly
@@ -50,7 +51,7 @@ def fields(planted, moved, sliding, E_for_E_star):
     shift = 0.03 * solution.contact_radius * moved
     at = {p.line: p.position for p in planted.exam.profiles}
     found = {(p.quantity, "contact"): p.value for p in sample_contact(solution, REFERENCE)}
-    for line in planted.case.lines:
+    for line in all_lines(planted.case.problem):
         along = line.direction == (1.0, 0.0, 0.0)
         beside = line if along else replace(line, origin=tuple(np.subtract(line.origin, (shift, 0, 0))))
         values = sample(solution, REFERENCE, beside, at[line.name] - shift * along, problem)

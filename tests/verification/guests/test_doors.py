@@ -22,6 +22,7 @@ from verification.guests.guest_protocol import VERSION, Answer, ProtocolError, Q
 from verification.guests.guest_verdicts import judged
 from verification.guests.slip_diagnosis import slips
 from verification.judging.verdict import Outcome
+from verification.problem.line_profile import all_lines
 from verification.problem.quantity import STRESSES
 from verification.running.case_result import SourceResult, from_json
 from verification.running.checked_files import read_checked
@@ -96,7 +97,7 @@ def inside_verdicts(name, method, exam):
     places = {p.line: p.position for p in exam.profiles}
     edge = float(exam.profile_of["contact_radius", "contact", REFERENCE].value[0])
     found = list(sample_contact(solution, method))
-    for line in case.lines:
+    for line in all_lines(case.problem):
         found += sample(solution, method, line, places[line.name], case.problem, edge)
     profiles = {(p.quantity, p.line, p.source): p for p in (*exam.profiles, *found)}
     sides = {side: SourceResult(side, 0.0) for side in (method, REFERENCE)}

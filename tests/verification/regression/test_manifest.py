@@ -16,8 +16,8 @@ from verification.credibility.self_tests.known_outputs import ELSEWHERE, HERE
 from verification.credibility.self_tests.known_runs import MATERIAL, ran
 from verification.credibility.self_tests.stand_ins import Stated
 from verification.regression.baseline_change import regression, updated
-from verification.regression.baseline_file import read_baseline, write_baseline
-from verification.running.case_result import CaseResult, to_json
+from verification.regression.baseline_file import write_baseline
+from verification.running.case_result import CaseResult
 from verification.running.stored_run import read_run
 
 DECIDE = "verification.running:decide"
@@ -115,11 +115,3 @@ def test_a_run_that_judges_less_ends_with_code_6_and_says_so_first(tmp_path):
     manifests = {"quick": replace(known.manifests["quick"], comparisons=(more,))}
     write_baseline(tmp_path / "base", replace(known, manifests=manifests))
     assert coatcheck(*words, cwd=tmp_path).returncode == 0
-
-
-def test_a_manifest_comes_back_from_its_file(tmp_path, recorded):
-    write_baseline(tmp_path, recorded)
-    stored = read_baseline(tmp_path)
-    assert stored is not None
-    assert stored.manifests == recorded.manifests
-    assert to_json(run())["verdicts"][0]["verdict"]["judged"]["points"] == 1

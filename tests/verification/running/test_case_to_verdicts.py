@@ -13,7 +13,6 @@ from case_texts import case_text
 from verification.cases.case_file import parse_case, read_case, shaped_cases
 from verification.judging.verdict import Outcome
 from verification.problem.point_answers import Answer, Sampled
-from verification.problem.quantity import SCALARS
 from verification.running.case_result import from_json, to_json
 from verification.running.contact_run import judge_case, run, solve_case
 from verification.sources.references import integral_equation
@@ -142,12 +141,6 @@ def test_hertz_is_asked_where_all_moduli_are_equal(tmp_path):
     assert result.outcome is Outcome.AGREES
     wrong = sources(hertz=lambda p, _: replace(Hertz(p.radius, p.load, *p.substrate), nu=0.31))
     assert run(case, wrong).outcome is Outcome.DISAGREES
-
-
-def test_one_more_scalar_leaves_every_verdict_as_it_was(case, monkeypatch):
-    before = judged(case, sources()).verdicts
-    monkeypatch.setattr("verification.running.contact_run.SCALARS", (*SCALARS, "stiffness"))
-    assert judged(case, sources()).verdicts == before
 
 
 def test_a_case_that_both_methods_fail_ends_without_results_though_a_closed_form_is_left():

@@ -8,7 +8,7 @@ import fem_reference
 import semianalytic
 from verification.cases.case_file import parse_case
 from verification.problem.quantity import STRESSES
-from verification.running.checked_files import StoreError, read_checked
+from verification.running.checked_files import StoreError
 from verification.running.stored_fields import confirm_fields, write_fields
 from verification.sampling import vtk_files
 
@@ -109,18 +109,6 @@ def test_von_mises_is_that_of_the_six_stresses(grid):
     np.testing.assert_allclose(data["von_mises [Pa]"], np.sqrt(square), rtol=1e-6, atol=1.0)
 
 
-def test_every_file_says_where_it_comes_from(case, grid):
-    assert grid.field_data["case file"][0] == case.text
-    assert grid.field_data["contact radius [m]"][0] > 0
-
-
-def test_boxes_of_a_fine_grid_leave_out_more_of_it(tmp_path, case, solutions, monkeypatch):
-    monkeypatch.setattr(vtk_files, "ALONG", 9)
-    write_fields(case, {"semianalytic": solutions["semianalytic"]}, tmp_path)
-    boxes = [pv.read(tmp_path / "fields" / f"one-semi-layer-{layer}.vtr") for layer in (0, 1)]
-    assert all(box.dimensions[:2] == (9, 9) and 0.0 in box.x for box in boxes)
-
-
 def test_damage_and_other_case_files_are_noticed(tmp_path, case, solutions):
     write_fields(case, {"fem_reference": solutions["fem_reference"]}, tmp_path)
     with pytest.raises(StoreError, match="another"):
@@ -133,8 +121,3 @@ def test_damage_and_other_case_files_are_noticed(tmp_path, case, solutions):
         with pytest.raises(StoreError, match=r"one-fem-layer-1\.vtr"):
             confirm_fields(tmp_path, "one", case.text)
         mesh.unlink(missing_ok=True)
-
-
-def test_a_method_without_fields_leaves_a_sentence(tmp_path, case):
-    write_fields(case, {"semianalytic": object()}, tmp_path)
-    assert "AttributeError" in read_checked(tmp_path / "fields" / "one.json")["failures"]["semianalytic"]

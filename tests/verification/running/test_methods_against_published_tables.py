@@ -72,14 +72,6 @@ def test_strains_follow_from_hookes_law_of_the_layer(disc):
     assert 0 < spread[0] < 1e-3 * abs(found[0])
 
 
-def test_sums_of_stresses_are_sums_of_stresses(disc):
-    at = on_axis(np.array([0.05, 0.2]))
-    trace, _ = values(disc, "sigma_kk", at, DISC)
-    xx, yy, zz = (values(disc, f"sigma_{c}", at, DISC)[0] for c in ("xx", "yy", "zz"))
-    assert trace == pytest.approx(xx + yy + zz)
-    assert values(disc, "sigma_zz - sigma_xx", at, DISC)[0] == pytest.approx(zz - xx)
-
-
 @pytest.mark.parametrize(
     ("name", "file", "old", "new", "column"),
     [

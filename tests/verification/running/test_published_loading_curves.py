@@ -114,13 +114,6 @@ def test_points_without_meaning_are_refused(files, a):
         files(csv=CSV.replace("\n0.2,", f"\n{a},"))
 
 
-def test_one_case_has_one_control(files):
-    second = TOML.replace("kappa", "load").split("[[table]]")[1].replace("contact_radius", "approach")
-    second = second.replace("series_over_load", "load")
-    with pytest.raises(CaseError, match="loading"):
-        files(TOML + "\n[[table]]" + second)
-
-
 @pytest.mark.parametrize(
     "name", [n for n in SHIPPED if isinstance(read_published(SHIPPED[n]).problem, LoadingCurve)]
 )
@@ -130,11 +123,3 @@ def test_exact_reference_meets_every_shipped_curve(name):
         v.reason for c, v in result.verdicts if EXACT[0] in c.between and v.outcome is not Outcome.AGREES
     ]
     assert reasons == []
-
-
-def test_the_quoted_table_of_hayes_departs_and_the_recomputed_one_does_not_count():
-    recomputed, quoted = read_published(SHIPPED["hayes_1972_nu_05"]).columns
-    assert not recomputed.counted.any()
-    assert quoted.counted.sum() == 1
-    assert quoted.reference.value == pytest.approx(recomputed.profile.value, abs=6e-4)
-    assert (1 - quoted.profile.value / recomputed.profile.value).max() == pytest.approx(0.009, abs=5e-4)

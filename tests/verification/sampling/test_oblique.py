@@ -30,17 +30,6 @@ def test_oblique_line_visits_every_layer_and_no_interface(coatings, friction):
     assert min(np.ptp(x), np.ptp(y), np.ptp(z)) > 0.5 * A
 
 
-def test_surface_line_goes_to_five_contact_radii_on_both_sides_where_it_slides():
-    for friction, least in ((0.25, -5.0), (0.0, 0.0)):
-        problem = CoatedContact(10e-3, 20.0, (), STEEL, friction)
-        line = line_of("oblique surface", problem)
-        s = oblique_sampling.positions(problem, line, A, NODES)
-        x, y, z = line.points(s)
-        assert (s.min(), s.max()) == pytest.approx((least * A, 5 * A))
-        assert np.all(z == 0)
-        assert y == pytest.approx(x * np.tan(np.pi / 6))
-
-
 def test_profiles_hold_the_six_stresses_and_three_displacements_of_their_points():
     for line in oblique_lines(BARE):
         position = oblique_sampling.positions(BARE, line, A, NODES)
@@ -51,15 +40,6 @@ def test_profiles_hold_the_six_stresses_and_three_displacements_of_their_points(
             assert all(np.array_equal(found[name], sigma[c]) for name, c in STRESSES.items())
         u = HAMILTON.displacement(*at)
         assert all(np.array_equal(found[name], u[i]) for i, name in enumerate(DISPLACEMENTS))
-
-
-def test_source_that_claims_no_displacement_has_no_profile_of_it():
-    class Stressed(Hertz):
-        displacement = None
-
-    line = line_of("oblique", BARE)
-    found = oblique_sampling.sample(Stressed(10e-3, 20.0, *STEEL, 0.25), "s", line, np.array([A, 2 * A]))
-    assert {p.quantity for p in found} == set(STRESSES)
 
 
 def test_off_plane_line_of_the_semi_analytical_method_comes_from_its_fields_on_planes():

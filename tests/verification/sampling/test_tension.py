@@ -13,7 +13,7 @@ from verification.problem.point_answers import ByFunctions, Points
 from verification.problem.quantity import PEAKS
 from verification.sampling import largest_tension
 from verification.sampling.largest_tension import Search, Tension, edge_uncertainty
-from verification.sampling.line_sampling import positions, sample
+from verification.sampling.line_sampling import sample
 from verification.sources.exact_sources import solve_exactly
 from verification.sources.references.hertz import Hertz
 
@@ -71,18 +71,6 @@ def test_no_place_of_a_dense_line_exceeds_the_largest_tension(ratio, h, f):
         assert curvature > 0
         assert abs(high - low) / (2 * step * curvature) < 1e-6 * a
         assert found.place_uncertainty < 1e-6 * a
-
-
-def test_surface_line_has_points_at_the_edge_and_next_to_it():
-    problem = contact((4 * STEEL, NU, 0.5), friction=0.25)
-    exact = solve_exactly(problem)
-    places = positions(problem, lines_of(problem), {"integral_equation": exact})
-    surface = next(x for line, x in places.items() if line.name == "surface") / exact.contact_radius
-    for d in (0.0, 1e-4, 1e-3, 1e-2):
-        for wanted in (1 + d, 1 - d, -1 - d, -1 + d):
-            assert np.abs(surface - wanted).min() < 1e-15
-    base = next(x for line, x in places.items() if line.name.startswith("interface"))
-    assert base.size < surface.size
 
 
 def test_peaks_are_numbers_of_the_contact():
@@ -153,19 +141,3 @@ def test_place_of_a_smooth_maximum_is_the_least_uncertain_one_with_its_distance_
     assert apart > best.place_uncertainty
     assert found.place_uncertainty == pytest.approx(best.place_uncertainty + apart, rel=1e-9, abs=0)
     assert abs(found.place + 2 * solution.contact_radius) < found.place_uncertainty
-
-
-class Shaken(Waving):
-    """Largest at the edge, where alone the companion has the same value."""
-
-    def stress(self, x, y, z, layer=None):
-        s = np.abs(np.asarray(x)) / self.contact_radius - 1
-        sigma = np.zeros((3, 3, *s.shape))
-        sigma[0, 0] = 1e9 * (2 - np.abs(s)) + 1e5 * self.phase * np.sin(1e6 * s)
-        return sigma
-
-
-def test_uncertainty_at_the_edge_is_not_that_of_a_single_point():
-    calm, shaken = (largest(Shaken(0.0, Shaken(phase)), contact()) for phase in (0.0, 1.0))
-    assert calm.place == shaken.place == -Shaken.contact_radius
-    assert shaken.uncertainty > calm.uncertainty + 1e4

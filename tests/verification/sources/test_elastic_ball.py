@@ -104,13 +104,6 @@ def test_a_ball_without_meaning_is_refused(method, ball, message):
         method.solve(radius=10e-3, load=20.0, coatings=(), substrate=STEEL, ball=ball)
 
 
-def test_the_problem_refuses_a_ball_without_meaning():
-    with pytest.raises(ValueError, match=r"ball\.E = -1"):
-        replace(BARE, ball=(-1.0, 0.3, ()))
-    with pytest.raises(ValueError, match="body = 'ball'"):
-        replace(BARE, ball=None).seen_from(BALL)
-
-
 def test_scales_and_beta_are_those_of_both_bodies():
     assert BARE.E_star == pytest.approx(replace(BARE, ball=None).E_star / 2)
     assert BARE.dundurs_beta == 0

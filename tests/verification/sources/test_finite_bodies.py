@@ -95,15 +95,6 @@ def test_disc_changes_the_approach_in_proportion_and_the_peak_with_the_cube_of_i
     assert scalars(contact(0.01), thickness=1e4) == pytest.approx(0.0, abs=1e-6)
 
 
-def test_disc_is_as_thick_as_stated_on_a_rigid_support():
-    problem = contact(0.1, coating=(4.0, 0.5))
-    disc = on_disc(problem, 2 * R)
-    assert disc.coatings[0] == problem.coatings[0]
-    assert sum(h for _, _, h in disc.coatings) == pytest.approx(2 * R, rel=1e-15)
-    assert disc.coatings[-1][:2] == problem.substrate
-    assert disc.substrate[0] > 1e5 * E
-
-
 def test_coating_of_the_balls_own_material_changes_nothing():
     x = np.linspace(0.0, 0.1 * R, 9)
     bare, coated = (ElasticBall(R, (layer, (E, NU))) for layer in ((), ((E, NU, 0.05 * R),)))

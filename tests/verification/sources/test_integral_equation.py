@@ -85,44 +85,12 @@ def test_surface_closed_form_continues_the_quadrature_below(sliding):
     assert difference.max() < 1e-5 * BARE.p_h
 
 
-def test_pressure_is_the_abel_integral_of_its_potential():
-    # -int_r^a phi'(t) / sqrt(t^2 - r^2) dt with t^2 = r^2 + s^2, by Gauss-Legendre
-    abel = integral_equation.solve(
-        radius=1e-2, load=20.0, coatings=((800e9, 0.2, 5e-6), (50e9, 0.3, 9e-6)), substrate=(210e9, 0.3)
-    ).abel
-    full = np.zeros(2 * abel.c.size - 1)
-    full[::2] = abel.c
-    slope = np.polynomial.legendre.legder(full)
-    x, weight = np.polynomial.legendre.leggauss(200)
-    for share in (0.0, 0.3, 0.9, 0.999):
-        reach = np.sqrt(1 - share**2)
-        t = np.hypot(share, 0.5 * reach * (1 + x))
-        expected = -0.5 * reach * (np.polynomial.legendre.legval(t, slope) / t) @ weight / abel.a
-        assert abel.pressure(share * abel.a) == pytest.approx(expected, rel=1e-11)
-    assert abel.pressure(1.1 * abel.a) == 0
-
-
 def test_peak_on_a_ring_is_found_between_the_samples():
     s, weight = np.polynomial.legendre.leggauss(40)
     s, weight = (1 + s) / 2, weight / 2
     # phi = 3 (1 - t^4) - (1 - t^2) is p ~ sqrt(1 - r^2) (1 + 4 r^2), largest at r^2 = 7/12
     found = AbelPressure.from_nodes(1.0, s, weight, 3 * (1 - s**4) - (1 - s**2))
     assert found.peak == pytest.approx((5 / 12) ** 0.5 * 10 / 3 * found.pressure(0.0), rel=1e-13, abs=0)
-
-
-def test_a_thin_coating_is_given_the_nodes_that_it_needs():
-    usual, fine = (
-        integral_equation.solve(
-            radius=10e-3,
-            load=20.0,
-            coatings=((52.5e9, 0.3, 0.05 * BARE.a_h),),
-            substrate=STEEL,
-            nodes=nodes,
-            estimate_uncertainty=False,
-        )
-        for nodes in (32, 64)
-    )
-    assert abs(usual.contact_radius / fine.contact_radius - 1) < 1e-6
 
 
 @pytest.mark.parametrize("depth", [0.0, 0.5])

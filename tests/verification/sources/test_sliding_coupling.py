@@ -68,12 +68,6 @@ def test_coupling_of_one_layer_is_dundurs_beta_for_short_waves_and_the_substrate
     assert long == pytest.approx(without.dundurs_beta * E_star / without.E_star, rel=1e-4)
 
 
-@pytest.mark.parametrize(("ratio", "h"), [(10.0, 0.1), (0.25, 0.5)])
-def test_expansion_of_a_coated_contact_converges_in_its_nodes(ratio, h):
-    coarse, fine = (sliding_change(coated(ratio, h), nodes) for nodes in (100, 150))
-    assert fine == pytest.approx(coarse, rel=1e-7)
-
-
 def test_thick_coating_gives_the_closed_forms_of_its_material():
     thick = coated(0.5, 300.0, nu=0.1)
     E1 = CoatedContact(10e-3, 20.0, (), (0.5 * E, 0.1))
@@ -194,34 +188,6 @@ def solve_sliding(kernel, gap0, mean):
             break
         active = found
     return delta, p
-
-
-@pytest.mark.parametrize("C", [0.2, 0.5, -0.5])
-def test_strips_meet_the_closed_form_of_a_sliding_cylinder(C):
-    """In the plane, at any C = f beta, with lambda = 1/2 - atan(C)/pi and P per length:
-
-        p = E*/(2 R) sin(pi lambda) (a + x)^lambda (a - x)^(1 - lambda),
-        a^2 = P R/[pi E* lambda (1 - lambda)]
-
-    about the centre (2 lambda - 1) a: by Cauchy's theorem for (z + 1)^lambda (z - 1)^(1 - lambda). It is the
-    contact of Johnson, Contact Mechanics (1985), section 8.2, whose equations were not read.
-    """
-    n, half_width, load = 101, 1.5, np.pi / 4
-    d = 2 * half_width / n
-    x, offset = (np.arange(n) - (n - 1) / 2) * d, np.arange(1 - n, n)[:, None] * d
-    ends = offset + d / 2, offset - d / 2
-    normal = -2 / np.pi * np.subtract(*(u * (np.log(np.abs(u)) - 1) for u in ends))
-    sliding = np.subtract(*np.abs(ends))
-    _, p = solve_sliding(normal + C * sliding, x[:, None] ** 2 / 2, load / (n * d))
-    p, exponent = p[:, 0], 0.5 - np.arctan(C) / np.pi
-    a = np.sqrt(load / (np.pi * exponent * (1 - exponent)))
-    centre = (2 * exponent - 1) * a
-    s = (x - centre) / a
-    assert x[p > 0][[0, -1]] == pytest.approx([centre - a, centre + a], abs=d)
-    assert p @ x / p.sum() == pytest.approx(4 / 3 * centre, rel=2e-4)
-    s, inner = s[np.abs(s) < 0.9], p[np.abs(s) < 0.9]
-    closed = a / 2 * np.sin(np.pi * exponent) * (1 + s) ** exponent * (1 - s) ** (1 - exponent)
-    assert inner == pytest.approx(closed, abs=1e-3 * closed.max())
 
 
 @pytest.mark.parametrize("problem", [BARE, coated(4.0, 0.5, nu=0.1)], ids=["bare", "coated"])

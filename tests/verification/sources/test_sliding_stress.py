@@ -71,14 +71,6 @@ def test_surface_outside_the_contact_continues_the_field_below():
         assert np.abs(extrapolated - np.array(surface[number])).max() < 1e-4 * BARE.p_h
 
 
-def test_homogeneous_layers_change_nothing():
-    plain, layered = (SlidingExpansion(replace(BARE, coatings=c)).first for c in ((), ((E, NU, 0.3 * A),)))
-    x = np.array([-1.0, 1.0, 1.3]) * plain.a
-    one = first_harmonic(plain, (), (E, NU), x, 0.0, 0)
-    other = first_harmonic(layered, ((E, NU, 0.3 * A),), (E, NU), x * layered.a / plain.a, 0.0, 0)
-    assert np.abs(np.array(one) - np.array(other)).max() < 1e-8 * BARE.p_h
-
-
 def test_uncoated_edge_has_the_closed_moment():
     first, beta = SlidingExpansion(BARE).first, BARE.dundurs_beta
     # the centre of pressure -3 beta a/(2 pi) less that of the contact, times W/pi
@@ -86,9 +78,3 @@ def test_uncoated_edge_has_the_closed_moment():
     trailing, _ = first_harmonic(first, (), (E, NU), np.array([-first.a]), 0.0, 0)
     expected = (1 - 2 * NU) * beta * BARE.load / (2 * np.pi**2 * first.a**2)
     assert trailing.xx[0] == pytest.approx(expected, rel=1e-10)
-
-
-def test_points_of_the_contact_are_refused():
-    first = SlidingExpansion(BARE).first
-    with pytest.raises(ValueError, match="contact"):
-        first_harmonic(first, (), (E, NU), np.array([0.5 * A]), 0.0, 0)
