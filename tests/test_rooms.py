@@ -127,6 +127,6 @@ def test_the_way_of_a_case_to_the_page_is_short(tmp_path):
     calls = json.loads(done.stdout)
     stays = [file for file, _ in groupby(file for file, _, _ in calls)]
     floors = [[FLOOR.get(Path(file).parts[1], len(FLOORS)) for file in (to, by or to)] for to, _, by in calls]
-    assert len(stays) <= 50
-    assert len(stays) - len(set(stays)) <= 20
-    assert sum(to > by for to, by in floors) <= 4
+    assert len(stays) <= 40
+    assert len(stays) - len(set(stays)) <= 12
+    assert sum(to > by for to, by in floors) <= 2

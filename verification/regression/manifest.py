@@ -82,7 +82,7 @@ def differences(result: CaseResult, then: Manifest) -> tuple[Difference, ...]:
 
 
 def differing_tests(then: Mapping[str, int], now: Mapping[str, int]) -> tuple[Difference, ...]:
-    """As ``differences``, of the self-tests: number of known answers by name."""
+    """Differences of the self-tests, of which ``then`` and ``now`` state the number of known answers."""
 
     def entries(tests: Mapping[str, int]) -> _Entries:
         return {("self-test", name): {"known answers": n} for name, n in tests.items()}
@@ -93,16 +93,17 @@ def differing_tests(then: Mapping[str, int], now: Mapping[str, int]) -> tuple[Di
 
 def manifest_message(found: Sequence[Difference]) -> str:
     """One sentence on all ``found``; empty where there is nothing to report."""
-    for rows, what in (
-        ([row for row in found if row.less], "is judged than the manifest records"),
-        ([row for row in found if not row.less], "is judged than recorded: coatcheck baseline update"),
-    ):
-        if rows:
-            word = "less" if rows[0].less else "more"
-            first = ", ".join(filter(None, (rows[0].case, rows[0].message)))
-            count = sum(row.count for row in rows)
-            return f"{word} {what}; {count} differences, first {first}"
-    return ""
+    less = [row for row in found if row.less]
+    rows = less or found
+    if not rows:
+        return ""
+    first = ", ".join(filter(None, (rows[0].case, rows[0].message)))
+    what = (
+        "is judged than the manifest records"
+        if less
+        else "is judged than recorded: coatcheck baseline update"
+    )
+    return f"{'less' if less else 'more'} {what}; {sum(row.count for row in rows)} differences, first {first}"
 
 
 _Entries = dict[tuple[str, ...], dict[str, float]]

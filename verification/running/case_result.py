@@ -159,7 +159,7 @@ def attempted(source: str, solve: Callable[[], Any]) -> tuple[Any, SourceResult]
     except Exception as error:
         return None, SourceResult(source, time.perf_counter() - begin, message_of(error))
     known, budget = found.diagnostics, getattr(found.uncertainty, "budget", ())
-    diagnostics = known if isinstance(known, dict) else asdict(known) if is_dataclass(known) else {}
+    diagnostics = known if isinstance(known, dict) else asdict(known) if is_dataclass(type(known)) else {}
     return found, SourceResult(source, time.perf_counter() - begin, None, diagnostics, budget)
 
 

@@ -24,13 +24,13 @@ from open_digits_made.row import DEPTH, INSIDE, SCALARS, Row, places
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.point_answers import Points
-from verification.sources.references.hertz_ellipse import PressedEllipsoid, pressed_ellipsoid
+from verification.sources.references.hertz_ellipse import HertzEllipse, pressed_ellipsoid
 
 ROUNDING = 1e-12  # relative, of the closed forms
 AXIS = ("sigma_xx", "sigma_yy", "sigma_zz")
 
 
-def exact(problem: CoatedContact) -> PressedEllipsoid:
+def exact(problem: CoatedContact) -> HertzEllipse:
     """Hertz's contact of an ellipsoid. Raises ValueError for coatings, friction or another indenter."""
     if problem.indenter is None or problem.coatings or problem.friction:
         raise ValueError(f"{problem}: no ellipsoid at rest on an uncoated solid")
@@ -38,7 +38,7 @@ def exact(problem: CoatedContact) -> PressedEllipsoid:
     return pressed_ellipsoid(along, across, problem.load, *problem.substrate)
 
 
-def axis_stresses(contact: PressedEllipsoid, nu: float, z: Array) -> dict[str, Array]:
+def axis_stresses(contact: HertzEllipse, nu: float, z: Array) -> dict[str, Array]:
     """Stresses [Pa] at depths z [m] below the centre of a contact that is no circle."""
     a, b = max(contact.axes), min(contact.axes)
     m, zeta, T = 1 - (b / a) ** 2, z / a, np.sqrt((b**2 + z**2) / (a**2 + z**2))

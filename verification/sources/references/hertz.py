@@ -50,7 +50,6 @@ class Hertz(ByFunctions):
     nu: float
     friction: float = 0.0
     ball: tuple[float, float] | None = field(default=None, kw_only=True)
-    uncertainty: ClassVar[Uncertainty] = Uncertainty()  # zero: exact
     diagnostics: ClassVar[None] = None
 
     def __post_init__(self) -> None:
@@ -99,6 +98,11 @@ class Hertz(ByFunctions):
     def peak_pressure(self) -> float:
         """p0 = 3 W / (2 pi a^2) [Pa]. Johnson (4.24)."""
         return 3 * self.load / (2 * np.pi * self.contact_radius**2)
+
+    @property
+    def uncertainty(self) -> Uncertainty:
+        """Zero: exact."""
+        return Uncertainty()
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """p = p0 sqrt(1 - r^2/a^2) inside the contact, 0 outside [Pa]. Johnson (3.39)."""

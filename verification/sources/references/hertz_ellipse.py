@@ -57,6 +57,11 @@ class HertzEllipse(ByFunctions):
         return self.p0
 
     @property
+    def axes(self) -> tuple[float, float]:
+        """Semi-axes along x and y [m]."""
+        return (self.b, self.a) if self.along_y else (self.a, self.b)
+
+    @property
     def curvatures(self) -> tuple[float, float]:
         """A and B of the indenter's height A x^2 + B y^2 [1/m], of an ellipse that is no circle."""
         K, E = float(ellipk(self._m)), float(ellipe(self._m))
@@ -74,8 +79,7 @@ class HertzEllipse(ByFunctions):
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """p [Pa], 0 outside."""
-        along, across = (y, x) if self.along_y else (x, y)
-        inside = 1 - (np.asarray(along) / self.a) ** 2 - (np.asarray(across) / self.b) ** 2
+        inside = 1 - (np.asarray(x) / self.axes[0]) ** 2 - (np.asarray(y) / self.axes[1]) ** 2
         return self.p0 * np.sqrt(np.maximum(inside, 0.0))
 
 
