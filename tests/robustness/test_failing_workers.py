@@ -70,14 +70,6 @@ def test_jobs_share_the_cores_and_each_has_one_at_least(cores, jobs, threads, tm
     assert run_tasks([task("threads", tmp_path)], jobs=jobs, time_limit=300) == [threads]
 
 
-def test_cores_are_those_that_the_process_may_use(monkeypatch):
-    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {3}, raising=False)
-    monkeypatch.setattr(os, "cpu_count", lambda: 8)
-    assert process_pool.cores() == 1
-    monkeypatch.delattr(os, "sched_getaffinity")
-    assert process_pool.cores() == 8
-
-
 def test_each_death_has_its_reason_and_the_others_finish(tmp_path):
     deaths = [how for how in REASONS if how != "hang"]
     tasks = [task(how, tmp_path) for how in (*deaths, "good")]

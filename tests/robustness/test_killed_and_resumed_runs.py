@@ -14,10 +14,7 @@ from typing import Any
 import pytest
 from case_texts import case_text
 
-from verification.cases.case_file import read_case
-from verification.running.case_tasks import case_task
 from verification.running.checked_files import PART, read_checked
-from verification.running.pool.process_pool import run_tasks
 
 QUICK = case_text(
     "E = 420e9; nu = 0.25; thickness_over_a_h = 0.8",
@@ -133,12 +130,3 @@ def test_runs_killed_and_resumed_lose_nothing_and_end_with_the_same_numbers(tmp_
     assert disturbed(tmp_path / "rough", cases, kills=10, longest=quarter) >= 4
     assert cases_of(tmp_path / "calm") == cases_of(tmp_path / "rough")
     assert len(cases_of(tmp_path / "calm")) == 4
-
-
-@pytest.mark.slow
-def test_ten_repetitions_give_identical_verdicts_and_numbers(tmp_path):
-    cases = [read_case(Path(path)) for path in quick_cases(tmp_path, 2)]
-    for n in range(10):
-        run_tasks([case_task(case, tmp_path / f"{n}") for case in cases], jobs=2, time_limit=3600)
-        assert len(cases_of(tmp_path / f"{n}")) == 2
-        assert cases_of(tmp_path / f"{n}") == cases_of(tmp_path / "0")

@@ -16,13 +16,10 @@ from malformed import keys_of
 from quick_case import COMMAND, QUICK, coatcheck_process
 
 from verification.cases.case_file import parse_case
-from verification.cases.published_file import published_cases, read_published
 from verification.commands.common.task_progress import kept_results
-from verification.running import case_tasks
 from verification.running.case_result import from_json, to_json
 from verification.running.case_tasks import case_task, kept_result, result_path
 from verification.running.checked_files import (
-    PART,
     StoreError,
     locked,
     read_bounded,
@@ -33,22 +30,12 @@ from verification.running.checked_files import (
 from verification.running.contact_run import judge_case, solve_case
 from verification.running.pool.process_pool import run_tasks
 from verification.running.provenance import fingerprint
-from verification.running.published_run import failed as printed_failed
 from verification.running.stored_fields import plane_path, write_plane
 from verification.sampling.stress_plane import sample_plane
 
 
 def content(folder: Path) -> dict[str, bytes]:
     return {str(p.relative_to(folder)): p.read_bytes() for p in sorted(folder.rglob("*")) if p.is_file()}
-
-
-def test_worker_writes_the_fields_where_they_are_wanted(tmp_path, monkeypatch):
-    written = []
-    monkeypatch.setattr(case_tasks, "write_fields", lambda case, solutions, folder: written.append(folder))
-    case = parse_case(QUICK.encode(), Path("one.toml"))
-    for fields in (False, True):
-        case_task(case, tmp_path, fields=fields).work()
-    assert written == [tmp_path]
 
 
 @pytest.fixture(scope="module")
@@ -143,26 +130,6 @@ def test_result_of_a_stranger_is_read_or_refused_but_never_trips(stored):
     assert refused > 100
 
 
-def test_what_was_cut_off_or_put_in_twice_is_refused(tmp_path):
-    path = tmp_path / "a.json"
-    write_checked(path, {"x": 1})
-    whole = path.read_text()
-    for text in (
-        "",
-        "{}",
-        "[]",
-        "[" * 100_000,
-        whole + whole,
-        whole.replace("}\n", ', "payload": {"x": 2}}\n'),
-        whole.replace('"sha256"', '"sha512"'),
-        whole.replace('{"x": 1}', "7"),
-        "null",
-    ):
-        path.write_text(text)
-        with pytest.raises(StoreError, match=r"a\.json: "):
-            read_checked(path)
-
-
 def test_pipe_device_or_directory_in_the_place_of_a_file_holds_nobody_up(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     (tmp_path / "zero").symlink_to("/dev/zero")
@@ -194,18 +161,6 @@ def test_nothing_is_written_through_a_link(tmp_path):
     with pytest.raises(StoreError, match="cases"), locked(run):
         pass
     assert content(outside) == {"precious": b"precious"}
-
-
-def test_half_written_files_of_a_killed_run_are_cleared_and_others_left(tmp_path):
-    (tmp_path / "cases").mkdir()
-    left = [tmp_path / f".report.html.x{PART}", tmp_path / "cases" / f".a.json.y{PART}"]
-    mine = [tmp_path / ".hidden", tmp_path / "cases" / "a.json", tmp_path / f"mine{PART}"]
-    for path in (*left, *mine):
-        path.write_text("x")
-    with locked(tmp_path):
-        pass
-    assert not any(path.exists() for path in left)
-    assert all(path.exists() for path in mine)
 
 
 def test_limit_on_file_size_is_one_sentence_and_the_earlier_results_stay(tmp_path):
@@ -248,13 +203,3 @@ def test_of_eight_runs_at_once_one_works_and_the_others_say_why_not(tmp_path):
     assert all(said.startswith("coatcheck: out: ") and said.count("\n") == 1 for said in refused)
     assert read_checked(tmp_path / "out" / "cases" / "quick.json")["outcome"] == "AGREES"
     assert json.loads((tmp_path / "out" / "report.json").read_text())
-
-
-def test_result_of_every_published_case_is_known_as_its_own(tmp_path):
-    # Spheres, discs and loading curves: each kind of problem comes back from its file as it went in.
-    for path in published_cases().values():
-        case = read_published(path)
-        stored = to_json(printed_failed(case, "a process that died", 1.0)) | {"made_by": fingerprint()}
-        write_checked(result_path(tmp_path, case), stored)
-        # It is the case's own, but a result it is not, so it is computed again.
-        assert kept_result(tmp_path, case) is None

@@ -98,12 +98,10 @@ def manifest_message(found: Sequence[Difference]) -> str:
     if not rows:
         return ""
     first = ", ".join(filter(None, (rows[0].case, rows[0].message)))
-    what = (
-        "is judged than the manifest records"
-        if less
-        else "is judged than recorded: coatcheck baseline update"
-    )
-    return f"{'less' if less else 'more'} {what}; {sum(row.count for row in rows)} differences, first {first}"
+    end = f"{sum(row.count for row in rows)} differences, first {first}"
+    if less:
+        return f"less is judged than the manifest records; {end}"
+    return f"more is judged than recorded: coatcheck baseline update; {end}"
 
 
 _Entries = dict[tuple[str, ...], dict[str, float]]

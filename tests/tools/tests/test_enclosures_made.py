@@ -5,7 +5,6 @@ from code_checked.import_independence import imports_of
 from enclosures_made.enclosed_problems import problems
 
 from verification.evidence.enclosure_record import SHIPPED, read_record
-from verification.problem.coated_contact import CoatedContact
 
 flint = pytest.importorskip("flint", reason="ball arithmetic is an extra: pip install 'coatcheck[certify]'")
 contact_enclosure = pytest.importorskip("enclosures_made.contact_enclosure")
@@ -55,8 +54,3 @@ def test_the_bound_of_the_tail_holds_beyond_its_end():
         for value, bound in zip(solid.amplitudes(flint.acb(k)), (fast, fast, slow, slow), strict=True):
             assert value.abs_upper() < bound
             assert value.abs_upper() > bound / 1e5  # the bound is no triviality
-
-
-def test_an_elastic_ball_is_refused():
-    with pytest.raises(ValueError, match="ball"):
-        contact_enclosure.enclose(CoatedContact(10e-3, 20.0, (), (210e9, 0.3), ball=(210e9, 0.3, ())))
