@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from verification.cases.published_file import published_cases, read_published
-from verification.cases.published_table import FOLDER, RECOMPUTED, read_table
+from verification.cases.published_table import RECOMPUTED
 from verification.cases.toml_file import CaseError
 from verification.problem.coated_contact import PrescribedLoad
 
@@ -87,16 +87,6 @@ def test_uncertainty_above_the_ceiling_is_refused_unless_the_file_states_why(fil
         files(csv="depth,s,w\n0,1e3,0.05\n")
 
 
-def test_listed_departures_correct_the_reference_and_are_not_counted(files):
-    stress, sink = files().columns
-    assert stress.text == ("100", "90.25", "60.5")
-    assert stress.counted.tolist() == [True, True, False]
-    assert sink.counted.tolist() == [True, True, True]
-    psi = 6894.757293168361
-    assert stress.profile.value[2] == pytest.approx(-60.5 * psi)
-    assert stress.reference.value == pytest.approx(-np.array([100, 90.25, 59.8]) * psi)
-
-
 @pytest.mark.parametrize(
     ("csv", "said"),
     [
@@ -115,36 +105,6 @@ def test_listed_departures_correct_the_reference_and_are_not_counted(files):
 def test_malformed_table_is_refused_with_file_row_and_column(files, csv, said):
     with pytest.raises(CaseError, match=said):
         files(csv=csv)
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ('unit = "psi"', 'unit = "bar"', r"t\.csv, column s"),
-        ('unit = "in" }\n', 'unit = "ell" }\n', r"t\.csv, column s"),
-        ('stress_unit = "ksi"', 'stress_unit = "bar"', r"disc\.toml"),
-        ('"sigma_zz"', '"sigma_rr"', r"t\.csv, column s"),
-        ('z = "depth"', 'z = "deep"', r"t\.csv"),
-        ("year = 1900", 'year = "1900"', r"disc\.toml"),
-        ('seen = "primary"', 'seen = "maybe"', r"disc\.toml: table 1, seen"),
-        ('file = "t.csv"', 'file = "../t.csv"', r"disc\.toml: table 1, file"),
-        ('file = "t.csv"', 'file = "u.csv"', r"u\.csv"),
-        ("pressure = 0.1", "radius = 0.1", r"disc\.toml"),
-        ('at = { z = "depth", unit = "in" }', "", r"disc\.toml"),
-        ("nu = 0.4,", "nu = 0.7,", r"disc\.toml: coating 1, nu"),
-    ],
-)
-def test_malformed_case_is_refused_with_file_and_key(files, old, new, said):
-    assert old in TOML
-    with pytest.raises(CaseError, match=said):
-        files(toml=TOML.replace(old, new))
-
-
-def test_row_that_is_not_there_is_named(files):
-    with pytest.raises(CaseError, match=r"t\.csv"):
-        files(toml=TOML.replace('file = "t.csv"', 'file = "t.csv"\nrows = { depth = 3.0 }'))
-    with pytest.raises(CaseError, match="cannot"):
-        read_table(FOLDER / "absent.csv")
 
 
 def test_lines_are_named_by_where_they_run(files):

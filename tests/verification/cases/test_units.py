@@ -93,29 +93,6 @@ def test_generated_texts_are_exact_or_refused_with_key_and_unit(drawn):
     assert found == float(value)
 
 
-@pytest.mark.parametrize(
-    ("key", "text", "message"),
-    [
-        ("load", "20 kg", "'kg'"),
-        ("E", "210 Gpa", "unknown"),
-        ("E", "2,1 GPa", "decimal"),
-        ("load", "20", "quotation"),
-        ("load", "-3 N", "above 0"),
-        ("load", "1e999 N", "finite"),
-        ("load", "9" * 70 + " N", "number"),
-        ("load", "2**9**9**9**9 N", "number"),
-        ("load", "20 N^(9**9**9**9)", "unknown"),
-        ("load", "1e9999 kN", "finite"),
-        ("thickness", "1e-9999 nm", "above 0"),
-    ],
-)
-def test_messages_name_key_and_unit(key, text, message):
-    with pytest.raises(CaseError) as error:
-        parse(with_text(key, text))
-    assert str(error.value).startswith(f"mine.toml: {KEYS[key]} ")
-    assert message in str(error.value)
-
-
 @pytest.mark.parametrize(("unit", "name"), [(unit, name) for unit, names in METRIC.items() for name in names])
 def test_metric_units_are_those_of_pint(unit, name):
     units = UnitRegistry(non_int_type=Decimal)

@@ -14,7 +14,7 @@ from verification.regression.run_comparison import compare_runs
 from verification.report.report_material import Material
 from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, RunInfo
-from verification.running.stored_run import StoredRun, read_run
+from verification.running.stored_run import StoredRun
 
 E, NU = STEEL
 GOOD = result_of(contact((2 * E, NU, 1.0)), name="stiff", points=33)
@@ -71,14 +71,6 @@ def test_cases_versions_and_times_of_one_run_only_are_told():
     # what only one of them ran is told by its numbers
     assert found.drifted
     assert found.verdicts == ()
-
-
-def test_a_run_comes_back_from_its_report(tmp_path):
-    write(tmp_path / "a", GOOD)
-    for place in (tmp_path / "a", tmp_path / "a" / "report.json"):
-        found = read_run(place)
-        assert found.info == INFO
-        assert not compare_runs(run_of(GOOD), found).drifted
 
 
 def test_the_command_says_it_by_code_and_by_words(tmp_path):

@@ -5,7 +5,6 @@ import pytest
 from html_document import Document
 
 from verification.cases.published_file import published_cases, read_published
-from verification.cases.toml_file import CaseError
 from verification.judging.verdict import Outcome
 from verification.problem.loading_curve import LoadingCurve
 from verification.report.report_material import Material
@@ -87,31 +86,6 @@ def test_every_value_is_judged_and_departures_are_shown(files):
     wrong = run(files(csv=CSV.replace("2.483525", "2.483535")), exact)
     judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in wrong.verdicts if EXACT[0] in c.between}
     assert judged["k"] is Outcome.DISAGREES
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "said"),
-    [
-        ('quantity = "kappa", unit = "1" }', 'quantity = "sigma_zz", unit = "MPa" }', "problem"),
-        ('at = { contact_radius = "a", unit = "h" }', 'at = { z = "a", unit = "h" }', "contact_radius"),
-        ('contact_radius = "a"', 'contact_radius = "b"', r"t\.csv"),
-        ('unit = "h" }\n', 'unit = "q" }\n', "unknown"),
-        ("uncertainty = 0.006", "uncertainty = -0.1", r"curve\.toml: table 1, column 3, uncertainty"),
-        ("radius = 10.0\n", "radius = 10.0\nfriction = 0.1\n", "friction"),
-        ("radius = 10.0\n", "load = 10.0\n", "load_radius"),
-        ('at = { contact_radius = "a", unit = "h" }', "", "positions"),
-    ],
-)
-def test_malformed_curves_are_refused_with_file_and_key(files, old, new, said):
-    assert old in TOML
-    with pytest.raises(CaseError, match=said):
-        files(TOML.replace(old, new))
-
-
-@pytest.mark.parametrize("a", ["nan", "-0.2", "0"])
-def test_points_without_meaning_are_refused(files, a):
-    with pytest.raises(CaseError, match=r"finite|contact_radius"):
-        files(csv=CSV.replace("\n0.2,", f"\n{a},"))
 
 
 @pytest.mark.parametrize(

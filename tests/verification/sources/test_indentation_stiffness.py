@@ -68,18 +68,3 @@ def test_the_control_is_what_is_asked_for(control):
     curve = LoadingCurve(100.0, control, (0.01, 0.003), LAYER, RIGID)
     value, _ = exact_loading(curve).sample(Points([0.003, 0.01]), control)
     assert value == pytest.approx([0.003, 0.01], rel=1e-10, abs=0)
-
-
-def gao_weight(xi, nu):
-    """First-order weight of a film's shear modulus: Gao, Chiu, Lee (1992)."""
-    edge = (1 - 2 * nu) * xi * np.log1p(1 / xi**2) - xi / (1 + xi**2)
-    return 2 / np.pi * np.arctan(xi) + edge / (2 * np.pi * (1 - nu))
-
-
-@pytest.mark.parametrize("nu", [0.1, 0.3, 0.5])
-def test_weight_of_gao_chiu_lee_1992_is_the_first_derivative_of_the_exact_stiffness(nu):
-    step = 1e-4
-    for h in (0.3, 1.0, 3.0):
-        up, down = (np.log((1 + s) * pressed(1.0, ((1 + s, nu, h),), (1.0, nu)).kappa) for s in (step, -step))
-        # Central differences leave out the square of the step.
-        assert (up - down) / (2 * step) == pytest.approx(gao_weight(h, nu), abs=2 * step**2)

@@ -47,17 +47,3 @@ def test_coating_of_the_substrates_own_moduli_changes_nothing():
         assert surface_coefficient(i * d, j * d, d, ((*STEEL, h),), STEEL) == pytest.approx(
             bare, rel=1e-10, abs=0
         )
-
-
-def test_far_from_a_thin_coating_only_the_substrate_is_felt():
-    d = 3e-6
-    near, far = (surface_coefficient(n * d, 0, d, ((4 * STEEL[0], 0.3, d),), STEEL) for n in (0, 60))
-    bare_near, bare_far = (surface_coefficient(n * d, 0, d, (), STEEL) for n in (0, 60))
-    assert near < 0.5 * bare_near
-    # What is left of the coating falls as (h/r)^2, here 3e-4.
-    assert far == pytest.approx(bare_far, rel=2e-3, abs=0)
-
-
-def test_patch_with_the_origin_in_line_with_its_rim_is_refused():
-    with pytest.raises(ValueError, match="rim"):
-        surface_coefficient(1.5e-6, 0.0, 3e-6, (), STEEL)

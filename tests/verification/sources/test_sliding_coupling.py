@@ -9,9 +9,8 @@ from scipy.sparse.linalg import LinearOperator, gmres
 from scipy.special import j0, j1
 
 from semianalytic.coefficients import frf
-from verification.problem.coated_contact import CoatedContact, keywords
-from verification.sources.assumptions.sliding_coupling import SlidingExpansion, coupling, first_harmonic
-from verification.sources.references import integral_equation
+from verification.problem.coated_contact import CoatedContact
+from verification.sources.assumptions.sliding_coupling import SlidingExpansion, coupling
 from verification.sources.references.layered_half_space import contact_modulus
 
 E, NU = 210e9, 0.3
@@ -212,36 +211,3 @@ def test_patches_without_an_expansion_confirm_a_coated_contact():
     assert sliding[0] / still[0] - 1 == pytest.approx(f**2 * change[3], rel=0.05)
     assert sliding[1] / still[1] - 1 == pytest.approx(expansion.peak_change(f)[0], rel=0.05)
     assert sliding[2] == pytest.approx(f * change[1] * expansion.a, rel=0.02)
-
-
-def field_of_patches(x, p, f, at, z, nu):
-    """sigma_xz at depth z > 0, sigma_xx at z = 0, along y = 0 by point forces.
-
-    Johnson, Contact Mechanics (1985), eqs. (3.19), (3.76).
-    """
-    area, (px, py) = (x[1] - x[0]) ** 2, np.meshgrid(x, x, indexing="ij")
-    dx, dy, force = at[:, None] - px[p > 0], -py[p > 0], p[p > 0] * area / (2 * np.pi)
-    r = np.sqrt(dx**2 + dy**2 + z**2)
-    if z > 0:
-        return -3 * (dx * z**2 + f * dx**2 * z) / r**5 @ force
-    by_traction = -3 * dx**3 / r**5 + (1 - 2 * nu) * (3 * dx**3 / r**5 - 2 * dx / r**3)
-    return ((1 - 2 * nu) * (dx**2 - dy**2) / r**4 + f * by_traction) @ force
-
-
-def test_patches_confirm_the_stresses_but_for_the_second_order():
-    C, nu = 0.2, 0.0
-    problem = CoatedContact(1.0, 4 / 3, (), (1.0, nu))
-    f, expansion = C / problem.dundurs_beta, SlidingExpansion(problem)
-    _, x, p = solve_on_patches(C, 49)
-    exact = integral_equation.solve(
-        **keywords(replace(problem, friction=f)), estimate_uncertainty=False, nodes=40
-    )
-    for z, at, component in ((0.5, np.linspace(-2, 2, 81), 2), (0.0, np.array([-1.2]), 0)):
-        centred = at - f * expansion.change.shift * expansion.a
-        fields = first_harmonic(expansion.first, (), problem.substrate, centred, z, 0)
-        change = sum(f**n * (one.xz if z else one.xx) for n, one in enumerate(fields, start=1))
-        without = exact.stress(centred, 0.0, z)[0, component]
-        true = np.abs(field_of_patches(x, p, f, at, z, nu)).max()
-        # as ``change.of_goodman`` states
-        assert abs(true / np.abs(without + change).max() - 1) < C**2 / 2
-        assert abs(true / np.abs(without).max() - 1) > 0.5 * C**2
