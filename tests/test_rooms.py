@@ -9,6 +9,7 @@ from itertools import groupby
 from pathlib import Path
 
 import pytest
+from method_constants import method_constants
 
 ROOT = Path(__file__).resolve().parent.parent
 PACKAGES = ("semianalytic", "fem_reference", "verification")
@@ -22,6 +23,9 @@ MODULES = sorted(
 )
 MOST_IN_A_FOLDER = 13
 MOST_LINES = 450
+MOST_NUMBERS = 90  # named in the modules of both methods
+# Beginnings of a line that needs the one before it.
+LEANING = ("The same ", "As ", "Of ", "That of ", "What ", "Where ")
 # A room imports from those before it; rooms on one floor do not import each other. The manual draws them.
 FLOORS = (
     ("problem",),
@@ -117,6 +121,35 @@ def test_stored_evidence_is_small_and_read_without_the_campaigns_that_make_it():
 def test_every_module_says_what_it_holds_in_its_first_line():
     docs = {path: ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) for path in MODULES}
     assert [path for path, text in docs.items() if not text] == []
+
+
+@pytest.mark.xfail(reason="classes of other rooms still repeat names", strict=True)
+def test_no_two_classes_of_the_product_share_a_name():
+    places = defaultdict(list)
+    for path in MODULES:
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ClassDef):
+                places[node.name].append(path.relative_to(ROOT).as_posix())
+    assert {name: found for name, found in places.items() if len(found) > 1} == {}
+
+
+@pytest.mark.xfail(reason="some docstrings of other rooms still begin so", strict=True)
+def test_the_first_line_of_a_docstring_can_be_read_alone():
+    found = []
+    for path in MODULES:
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
+                first = (ast.get_docstring(node) or "").partition("\n")[0]
+                if first.startswith(LEANING):
+                    found.append(f"{path.relative_to(ROOT)}: {first}")
+    assert found == []
+
+
+@pytest.mark.xfail(reason="the tables of both methods are being made", strict=True)
+def test_both_methods_have_few_numbers_and_each_says_what_it_is():
+    found = method_constants()
+    assert len(found) <= MOST_NUMBERS
+    assert [one.name for one in found if not one.said] == []
 
 
 @pytest.mark.slow

@@ -20,6 +20,7 @@ app.command("faults_planted.faults:faults")
 app.command("alarms:alarms")
 app.command("enclosures_made.certify:certify")
 app.command("code_checked.checking:code")
+app.command("method_constants:constants")
 
 if __name__ == "__main__":
     sys.exit(app(result_action="return_value"))

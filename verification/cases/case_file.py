@@ -132,7 +132,7 @@ class Sized(Strict):
         return InSI.given_in(half, self.diameter.unit) if isinstance(self.diameter, InSI) else half
 
 
-class _Problem(Sized):
+class _CaseProblem(Sized):
     load: Newtons | None = None
     approach: Metres | None = None
     indenter: IndenterEntry | None = None
@@ -143,7 +143,7 @@ class _Problem(Sized):
     temperature_change: TemperatureChange | None = None
 
     @model_validator(mode="after")
-    def _one_statement(self) -> "_Problem":
+    def _one_statement(self) -> "_CaseProblem":
         given = [f"{name} = {value:g}" for name in ("load", "approach") if (value := getattr(self, name))]
         if len(given) != 1:
             found = f"{' and '.join(given)} are both given" if given else "neither of them is given"
@@ -264,7 +264,7 @@ class _FemNumerics(Strict):
 class _CaseFile(Strict):
     title: Text
     source: Text = NO_SOURCE
-    problem: _Problem
+    problem: _CaseProblem
     semianalytic: _SemianalyticNumerics = _SemianalyticNumerics()
     fem_reference: _FemNumerics = _FemNumerics()
     claim: Annotated[list[_Claim], Field(default_factory=list, max_length=1000)]

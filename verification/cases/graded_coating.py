@@ -20,7 +20,7 @@ from verification.cases.unit_numbers import Pascals
 LAYERS = 50  # of a body at most, sub-layers counted
 
 
-class Course(Strict):
+class GradedCourse(Strict):
     """A modulus [Pa] that goes from ``top`` to ``base`` of the coating, the top being its surface."""
 
     course: Literal["linear", "exponential"]
@@ -33,14 +33,14 @@ class Course(Strict):
         return f"{self.top / 1e9:.4g} to {self.base / 1e9:.4g} GPa, {self.course}"
 
 
-class Table(Strict):
+class ModulusTable(Strict):
     """Moduli ``E`` [Pa] at shares ``depth`` of the thickness, from 0 at the surface of the coating to 1."""
 
     depth: Annotated[list[Annotated[float, Field(ge=0, le=1)]], Field(min_length=2, max_length=1000)]
     E: Annotated[list[Pascals], Field(min_length=2, max_length=1000)]
 
     @model_validator(mode="after")
-    def _whole(self) -> "Table":
+    def _whole(self) -> "ModulusTable":
         if len(self.depth) != len(self.E):
             count = f"{len(self.depth)} depths and {len(self.E)} moduli"
             raise ValueError(f"has {count}; give one E for each depth")
@@ -55,23 +55,25 @@ class Table(Strict):
 
 
 def _kind(given: Any) -> str:
-    if isinstance(given, Table) or (isinstance(given, dict) and "depth" in given):
+    if isinstance(given, ModulusTable) or (isinstance(given, dict) and "depth" in given):
         return "table"
-    return "course" if isinstance(given, dict | Course) else "value"
+    return "course" if isinstance(given, dict | GradedCourse) else "value"
 
 
 Modulus = Annotated[
-    Annotated[Pascals, Tag("value")] | Annotated[Course, Tag("course")] | Annotated[Table, Tag("table")],
+    Annotated[Pascals, Tag("value")]
+    | Annotated[GradedCourse, Tag("course")]
+    | Annotated[ModulusTable, Tag("table")],
     Discriminator(_kind),
 ]
 
 
-def moduli(E: float | Course | Table, layers: int) -> tuple[float, ...]:
+def moduli(E: float | GradedCourse | ModulusTable, layers: int) -> tuple[float, ...]:
     """The modulus [Pa] of each of ``layers`` equal sub-layers from the surface down."""
     s = (np.arange(layers) + 0.5) / layers
-    if isinstance(E, Table):
+    if isinstance(E, ModulusTable):
         return tuple(np.interp(s, E.depth, E.E).tolist())
-    if isinstance(E, Course):
+    if isinstance(E, GradedCourse):
         linear = E.top + (E.base - E.top) * s
         return tuple((linear if E.course == "linear" else E.top * (E.base / E.top) ** s).tolist())
     return (E,) * layers

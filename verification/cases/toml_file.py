@@ -190,7 +190,7 @@ def _meant(key: str, known: Sequence[str]) -> str:
 
 
 def worded(one: Any, *, shown: bool = True) -> str:
-    """What is wrong about a value, with that value if ``shown``, from an error of pydantic."""
+    """Fault of a value, with that value if ``shown``, from an error of pydantic."""
     message, kind, limits = one["msg"].removeprefix("Value error, "), one["type"], one.get("ctx", {})
     text = {
         "missing": "is missing",

@@ -91,7 +91,7 @@ class CoatedContact:
         return (FLAT,) if self.ball is None else (FLAT, BALL)
 
     def seen_from(self, body: str) -> "CoatedContact":
-        """The same contact with ``body`` as the flat: of the ball the two bodies are exchanged.
+        """This contact with ``body`` as the flat: of the ball the two bodies are exchanged.
 
         Raises ValueError where the ball is rigid.
         """
@@ -129,7 +129,7 @@ class CoatedContact:
         return all([*same, *((E, nu) == self.ball[:2] for E, nu, _ in ball if self.ball)])
 
     def under_disc(self, pressure: float, load_radius: float) -> "PrescribedLoad":
-        """The same solid, friction included, under ``pressure`` [Pa] on a disc of ``load_radius`` [m]."""
+        """This solid, friction included, under ``pressure`` [Pa] on a disc of ``load_radius`` [m]."""
         shared = {f.name for f in fields(PrescribedLoad)} & {f.name for f in fields(self)}
         return PrescribedLoad(pressure, load_radius, **{name: getattr(self, name) for name in shared})
 
@@ -165,7 +165,7 @@ def keywords(problem: Any) -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class Uncertainty:
+class ScalarUncertainty:
     """Uncertainty of the scalars of a reference, absolute, SI: of a closed form 0, otherwise by quadrature.
 
     budget : (scalar, contribution, value) of each that is not exact.

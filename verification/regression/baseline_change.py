@@ -6,7 +6,13 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from verification.page.number_text import scientific
-from verification.regression.manifest import Difference, Manifest, differences, differing_tests, manifest_of
+from verification.regression.manifest import (
+    Manifest,
+    ManifestDifference,
+    differences,
+    differing_tests,
+    manifest_of,
+)
 from verification.regression.number_drift import Drift, Numbers, State, drift, edges_of, measured
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.json_records import plain
@@ -64,7 +70,7 @@ class Update:
     versions: dict[str, str]
     numbers: int
     changes: dict[str, tuple[int, float | None]]
-    less: tuple[Difference, ...] = ()
+    less: tuple[ManifestDifference, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,11 +108,11 @@ class Regression:
     update: Update | None
     cases: tuple[CaseDrift, ...]
     other_versions: tuple[tuple[str, str, str], ...] = ()
-    judged: tuple[Difference, ...] = ()
+    judged: tuple[ManifestDifference, ...] = ()
 
     @property
-    def less(self) -> tuple[Difference, ...]:
-        """What is missing, wider or fewer than the manifest records."""
+    def less(self) -> tuple[ManifestDifference, ...]:
+        """Differences that are missing, wider or fewer than the manifest records."""
         return tuple(row for row in self.judged if row.less)
 
     @property
@@ -183,7 +189,9 @@ def regression(
         for row in differences(result, baseline.manifests[result.name])
     ]
     run = {result.name for result in results}
-    judged += [Difference(c.name, "the case was not run", 1, True) for c in cases if c.name not in run]
+    judged += [
+        ManifestDifference(c.name, "the case was not run", 1, True) for c in cases if c.name not in run
+    ]
     if self_tests is not None:
         judged += differing_tests(baseline.self_tests, self_tests)
     return Regression(folder, then, cases, other, tuple(judged))
@@ -251,7 +259,7 @@ def updated(
         if count:
             changes[case.name] = (count, case.change)
     digests = {result.name: digest(result.text) for result in results}
-    less: tuple[Difference, ...] = ()
+    less: tuple[ManifestDifference, ...] = ()
     if old is not None:
         less = regression(results, old, "", info, whole=True, self_tests=tests).less
         for name in (name for name in old.cases if old.published(name) and name not in cases):

@@ -68,7 +68,7 @@ def section(found: Regression | None, anchors: Mapping[CaseResult, str]) -> Sect
 
 
 def _judged(found: Regression) -> str:
-    """What was judged compared with the manifest, in two sentences."""
+    """Comparison of what was judged with the manifest, in two sentences."""
     rule = (
         "The manifest records of each case what was judged: cap and scale in force, number, extent, widest "
         "gap of the points of each comparison, invariants, self-tests, sources, counted published values."

@@ -28,7 +28,7 @@ class Comparisons:
 
 @dataclass(frozen=True)
 class Manifest:
-    """What was judged of one case.
+    """All that was judged of one case.
 
     invariants : name, source, cap, number of residuals, largest bound.   sources : those with a result.
     cells : of a published case, the number of values that count.
@@ -41,7 +41,7 @@ class Manifest:
 
 
 @dataclass(frozen=True)
-class Difference:
+class ManifestDifference:
     """``message``: what was judged of ``case`` otherwise than recorded, ``less`` or more, ``count`` times."""
 
     case: str
@@ -51,7 +51,7 @@ class Difference:
 
 
 def manifest_of(result: CaseResult) -> Manifest:
-    """What the run that made ``result`` judged; comparisons without a result are left out."""
+    """Manifest of the run that made ``result``; comparisons without a result are left out."""
     alike = defaultdict(list)
     for claim, verdict in result.verdicts:
         if verdict.judged is not None:
@@ -67,8 +67,8 @@ def manifest_of(result: CaseResult) -> Manifest:
     return Manifest(comparisons, invariants, sources, cells)
 
 
-def differences(result: CaseResult, then: Manifest) -> tuple[Difference, ...]:
-    """What the run that made ``result`` judged otherwise than ``then``, what is less first.
+def differences(result: CaseResult, then: Manifest) -> tuple[ManifestDifference, ...]:
+    """Differences of the run that made ``result`` from ``then``, what is less first.
 
     A comparison or invariant without a result fails by itself and is not named a second time.
     """
@@ -77,21 +77,21 @@ def differences(result: CaseResult, then: Manifest) -> tuple[Difference, ...]:
     lost = {(c.line, c.quantity, *c.between) for c, v in result.verdicts if v.judged is None}
     lost |= {(one.name, one.source) for one in result.invariants if one.outcome is Outcome.NO_RESULT}
     found = Counter(_differences(_entries(then), _entries(now), lost))
-    rows = [Difference(result.name, message, n, less) for (message, less), n in found.items()]
+    rows = [ManifestDifference(result.name, message, n, less) for (message, less), n in found.items()]
     return tuple(sorted(rows, key=lambda row: not row.less))
 
 
-def differing_tests(then: Mapping[str, int], now: Mapping[str, int]) -> tuple[Difference, ...]:
+def differing_tests(then: Mapping[str, int], now: Mapping[str, int]) -> tuple[ManifestDifference, ...]:
     """Differences of the self-tests, of which ``then`` and ``now`` state the number of known answers."""
 
     def entries(tests: Mapping[str, int]) -> _Entries:
         return {("self-test", name): {"known answers": n} for name, n in tests.items()}
 
     found = _differences(entries(then), entries(now), set())
-    return tuple(Difference("", message, 1, less) for message, less in found)
+    return tuple(ManifestDifference("", message, 1, less) for message, less in found)
 
 
-def manifest_message(found: Sequence[Difference]) -> str:
+def manifest_message(found: Sequence[ManifestDifference]) -> str:
     """One sentence on all ``found``; empty where there is nothing to report."""
     less = [row for row in found if row.less]
     rows = less or found

@@ -30,7 +30,7 @@ from verification.running.checked_files import MAX_BYTES, StoreError, read_bound
 from verification.running.json_records import decode
 from verification.running.provenance import machine
 from verification.running.stored_fields import read_planes
-from verification.sampling.stress_plane import Plane
+from verification.sampling.stress_plane import StressPlane
 from verification.validation import validation_page
 from verification.validation.validation_metric import ValidationRecord
 
@@ -142,7 +142,7 @@ class Material:
     results: Sequence[CaseResult]
     info: RunInfo
     evidence: Evidence = field(default_factory=Evidence)
-    planes: Mapping[str, Plane] = field(default_factory=dict)
+    planes: Mapping[str, StressPlane] = field(default_factory=dict)
 
     @cached_property
     def contacts(self) -> list[CaseResult]:

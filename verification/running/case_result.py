@@ -92,7 +92,7 @@ class CaseResult:
 
 @dataclass(frozen=True)
 class RunInfo:
-    """Where and how a run was made: the command, its start (ISO 8601), seconds, versions by package."""
+    """Provenance of a run: the command, its start (ISO 8601), seconds, versions by package."""
 
     command: str
     started: str
@@ -152,7 +152,7 @@ def describe(problem: CoatedContact | PrescribedLoad | LoadingCurve) -> dict[str
 
 
 def attempted(source: str, solve: Callable[[], Any]) -> tuple[Any, SourceResult]:
-    """What ``solve`` finds, None where it fails, and the row of the report: any failed solve is a message."""
+    """The find of ``solve``, None where it fails, and the row of the report: any failure is a message."""
     begin = time.perf_counter()
     try:
         found = solve()

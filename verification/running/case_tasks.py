@@ -37,7 +37,7 @@ _METHOD_PACKAGES = tuple(SOURCES[method].package for method in METHODS)
 
 
 def result_path(folder: Path, case: Case | PublishedCase) -> Path:
-    """Where the checked result of ``case`` lies in a run directory."""
+    """Path of the checked result of ``case`` in a run directory."""
     return folder / "cases" / f"{case.name}.json"
 
 

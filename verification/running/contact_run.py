@@ -33,7 +33,7 @@ def run(case: Case, available: Mapping[str, Solver] | None = None) -> CaseResult
 
 
 @dataclass(frozen=True, eq=False)
-class Solved:
+class SolvedCase:
     """Solution and SourceResult of each source of a case, by name; a source that failed has no Solution.
 
     resolved : invariants between solutions of the problem and of others, where the case has ``resolve``.
@@ -44,7 +44,7 @@ class Solved:
     resolved: tuple[Invariant, ...] = ()
 
 
-def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Solved:
+def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> SolvedCase:
     """Solve a case by every source its claims name; ``available`` as in ``run``."""
     available = solvers() if available is None else available
     wanted = {source for claim in case.claims for source in claim.between}
@@ -54,7 +54,7 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
         solution, outcomes[source] = attempted(source, partial(_solved, case, source, available[source]))
         if solution is not None:
             solutions[source] = solution
-    return Solved(solutions, outcomes, resolved(case.problem, available) if case.resolve else ())
+    return SolvedCase(solutions, outcomes, resolved(case.problem, available) if case.resolve else ())
 
 
 def keywords_of(case: Case, source: str) -> dict[str, Any]:
@@ -71,7 +71,7 @@ def _solved(case: Case, source: str, solve: Solver) -> Solution:
     return solution
 
 
-def judge_case(case: Case, solved: Solved, *, invariants: bool = True) -> CaseResult:
+def judge_case(case: Case, solved: SolvedCase, *, invariants: bool = True) -> CaseResult:
     """Sample every solution at the same points of every line, then decide each claim of ``case``.
 
     invariants : whether each solution is checked against its invariants too.

@@ -78,7 +78,7 @@ class RecordFile(Generic[T]):
     more: Callable[[T], dict[str, Any]] = lambda record: {}
 
     def to_json(self, record: T) -> dict[str, Any]:
-        """What the file holds, as strict JSON."""
+        """Content of the file, as strict JSON."""
         return {"schema": self.schemas[0], **encode(record), **plain(self.more(record))}
 
     def path_in(self, folder: Path) -> Path:

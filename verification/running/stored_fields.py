@@ -25,7 +25,7 @@ from verification.running.checked_files import (
     write_checked,
 )
 from verification.running.json_records import decode, encode
-from verification.sampling.stress_plane import Plane
+from verification.sampling.stress_plane import StressPlane
 from verification.sampling.vtk_files import WRITERS
 from verification.sources.source_registry import SOURCES
 
@@ -34,11 +34,11 @@ PLANE = "coatcheck-plane/2"
 
 
 def plane_path(folder: Path, name: str) -> Path:
-    """Where the plane of the case called ``name`` lies in a run directory."""
+    """Path of the plane of the case called ``name`` in a run directory."""
     return folder / "planes" / f"{name}.json"
 
 
-def write_plane(path: Path, plane: Plane, case_file: str) -> None:
+def write_plane(path: Path, plane: StressPlane, case_file: str) -> None:
     """Store ``plane`` with the case file it came from; nine digits, a billionth of the largest stress."""
     peaks = [float(np.max(np.abs(s))) for some in plane.stress.values() for s in some]
     largest = max((peak for peak in peaks if np.isfinite(peak)), default=0.0)
@@ -48,18 +48,18 @@ def write_plane(path: Path, plane: Plane, case_file: str) -> None:
     write_checked(path, content)
 
 
-def read_plane(path: Path, case_file: str) -> Plane:
+def read_plane(path: Path, case_file: str) -> StressPlane:
     """The plane stored at ``path``.
 
     Raises StoreError where it is missing, damaged or of another case file.
     """
     try:
-        return decode(Plane, _content(path, PLANE, case_file).get("plane"))
+        return decode(StressPlane, _content(path, PLANE, case_file).get("plane"))
     except ValueError:
         raise StoreError(f"{path}: not a whole plane; it is damaged, run the case again") from None
 
 
-def read_planes(folder: Path, results: Iterable[CaseResult]) -> dict[str, Plane]:
+def read_planes(folder: Path, results: Iterable[CaseResult]) -> dict[str, StressPlane]:
     """The planes that a run directory holds of ``results``, by name of the case."""
     found = {}
     for result in results:
@@ -69,7 +69,7 @@ def read_planes(folder: Path, results: Iterable[CaseResult]) -> dict[str, Plane]
 
 
 def fields_path(folder: Path, name: str) -> Path:
-    """Where a run directory has the checksums of the fields of the case called ``name``."""
+    """Path of the checksums of the fields of the case called ``name`` in a run directory."""
     return folder / "fields" / f"{name}.json"
 
 

@@ -59,7 +59,7 @@ class Search:
 
     @property
     def edges(self) -> slice:
-        """Of the samples, those around the edges."""
+        """Samples around the edges."""
         return slice(-5 * len(self._sides), None)
 
     def largest(self, value: Array, U: Array | None) -> Tension:

@@ -83,7 +83,7 @@ def positions(
 
 
 def ends_of(solution: Solution) -> Array:
-    """Where on y = 0 the contact begins or ends [m], just outside it, found between the surface nodes."""
+    """Ends of the contact on y = 0 [m], just outside it, found between the surface nodes."""
     x = solution.surface_nodes
     least = 1e-6 * solution.peak_pressure
     loaded = solution.pressure(x) > least

@@ -27,7 +27,7 @@ CROWDING = 0.6  # levels are even in z ** CROWDING: close below the surface, wid
 
 
 @dataclass(frozen=True, eq=False)
-class Plane:
+class StressPlane:
     """Stresses at x [m], (nx,), and the depths z [m] of each layer, (nz,), both sides of its interfaces.
 
     stress : by source, for each layer the stresses ``IN_PLANE`` [Pa], (4, nz, nx); the others are 0.
@@ -41,14 +41,14 @@ class Plane:
     failures: Mapping[str, str]
 
 
-def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, Solution]) -> Plane:
+def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, Solution]) -> StressPlane:
     """Stresses of the methods among ``solutions`` at the same points; a method that fails leaves its message.
 
     interfaces : depths [m] from the surface down.
     """
     methods = {name: solutions[name] for name in METHODS if name in solutions}
     if not methods:
-        return Plane(np.zeros(0), (), 0.0, {}, {})
+        return StressPlane(np.zeros(0), (), 0.0, {}, {})
     first = next(iter(methods.values()))
     stress, failures = {}, {}
     x = _columns(first)
@@ -59,11 +59,11 @@ def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, Solution
             stress[name] = tuple(np.array([sigma[c] for c in IN_PLANE.values()]) for sigma in layers)
         except Exception as error:  # a result does not depend on its pictures
             failures[name] = f"{type(error).__name__}: {' '.join(str(error).split())[:300]}"
-    return Plane(x, depths, float(first.contact_radius), stress, failures)
+    return StressPlane(x, depths, float(first.contact_radius), stress, failures)
 
 
 def plane_invariants(
-    plane: Plane, solutions: Mapping[str, Solution], problem: CoatedContact
+    plane: StressPlane, solutions: Mapping[str, Solution], problem: CoatedContact
 ) -> tuple[Invariant, ...]:
     """The stresses of ``plane`` are those at its points: two of each layer, beside and below the contact."""
     columns = np.abs(plane.x[:, None] - plane.radius * CHECKED).argmin(axis=0) if plane.x.size else []

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from verification.problem.array_types import Array, Coatings
-from verification.problem.coated_contact import CoatedContact, PrescribedLoad, Solution, Uncertainty
+from verification.problem.coated_contact import CoatedContact, PrescribedLoad, ScalarUncertainty, Solution
 from verification.problem.point_answers import UNSUPPORTED, Answer, Points, Sampled
 from verification.problem.quantity import SCALARS
 
@@ -102,7 +102,7 @@ class Extrapolated(Sampled):
         return self.near.surface_nodes
 
     @cached_property
-    def uncertainty(self) -> Uncertainty | None:
+    def uncertainty(self) -> ScalarUncertainty | None:
         """Uncertainty of the scalars; None where the solutions state none."""
         rows, total = [], {}
         for name in SCALARS:
@@ -115,7 +115,7 @@ class Extrapolated(Sampled):
             assert own is not None
             rows += [(name, "the three solutions", float(own)), (name, "limit", float(bend))]
             total[name] = float(own + bend)
-        return Uncertainty(**total, budget=tuple(rows))
+        return ScalarUncertainty(**total, budget=tuple(rows))
 
 
 def _limit(values: tuple[Any, Any, Any], stated: tuple[Any, Any, Any]) -> tuple[Any, Any | None, Any]:

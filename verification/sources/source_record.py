@@ -12,7 +12,7 @@ Solver = Callable[..., Any]  # (problem, numerics) -> Solution, of a LoadingCurv
 
 
 class Independence(StrEnum):
-    """What the two sources of a comparison have in common, the most independent first."""
+    """Common ground of the two sources of a comparison, the most independent first."""
 
     NOTHING = "without a common equation"
     EQUATION = "with a common equation, coded twice"
@@ -22,7 +22,7 @@ class Independence(StrEnum):
 
 
 class Kind(StrEnum):
-    """Where the numbers of a source come from."""
+    """Origin of the numbers of a source."""
 
     METHOD = "method"
     EXACT = "exact"

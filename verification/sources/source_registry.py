@@ -40,7 +40,7 @@ def sources_of(problem: Problem, kind: str = "stress") -> tuple[str, ...]:
 
 
 def independence(between: tuple[str, ...], *, shaped: bool = False) -> Independence:
-    """What two sources that are compared have in common.
+    """Common ground of two sources that are compared.
 
     shaped : the indenter is no sphere; the finite elements then correct the pressure of the patches, see
     ``method_sources.solve_elements``, and what they do not reach of it is common to both.

@@ -23,7 +23,7 @@ from verification.problem.coated_contact import Solution
 from verification.problem.line_profile import EDGE_LINE, Profile, all_lines
 from verification.problem.quantity import DISPLACEMENTS
 from verification.regression.baseline_change import State, drift, measured
-from verification.regression.manifest import Difference, differences, manifest_message, manifest_of
+from verification.regression.manifest import ManifestDifference, differences, manifest_message, manifest_of
 from verification.regression.number_drift import ENDS
 from verification.running import contact_run as run
 from verification.running import published_run
@@ -92,7 +92,7 @@ def of_invariant(row: Invariant, case: str) -> Check:
     return Check("invariants", name, case, detail, row.outcome, row.message)
 
 
-def of_manifest(found: Sequence[Difference], case: str) -> Check:
+def of_manifest(found: Sequence[ManifestDifference], case: str) -> Check:
     """What is judged of a case compared with the clean run."""
     message = manifest_message([row for row in found if row.less])
     outcome = Outcome.DISAGREES if message else Outcome.AGREES

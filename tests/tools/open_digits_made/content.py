@@ -9,26 +9,10 @@ from typing import Any
 
 from open_digits_made.problems import VectorProblem
 from open_digits_made.row import SCALARS, Row
-from open_digits_made.vector_schema import LICENCE, VERSION, VectorSet
-from verification.guests.vectors.open_digits import csv_texts
-from verification.problem.coated_contact import CoatedContact
+from open_digits_made.vector_schema import VectorSet
+from verification.guests.vectors.open_digits import csv_texts, shipped
 
 DIGITS = 12  # significant, of values
-CITE = (
-    "coatcheck open digits, version 1 (2026): exact values of coated point contact and of layered "
-    "half-spaces under a uniform disc; CC0 1.0"
-)
-CONVENTIONS = {
-    "units": "SI",
-    "axes": "origin at first contact, x along sliding, z into the solid, surface z = 0; all points at y = 0",
-    "signs": "stress positive in tension, pressure and load in compression; on the surface sigma_zz = -p and "
-    "sigma_xz = -friction p",
-    "problem": "rigid parabolic sphere, rigid ellipsoid with radii of curvature along x and y, or uniform "
-    "pressure on a disc; coatings from the surface down, bonded; friction does not change the pressure",
-    "contact_radius": "of an ellipse that of the disc of its area, sqrt(half_axis_x half_axis_y)",
-    "layer": "0 is the first below the surface; on an interface it picks the side",
-    "approach": "of the sphere; of a disc u_z at the origin, positive into the solid",
-}
 
 
 def vector(problem: VectorProblem, rows: Sequence[Row]) -> dict[str, Any]:
@@ -50,31 +34,13 @@ def vector(problem: VectorProblem, rows: Sequence[Row]) -> dict[str, Any]:
     return {
         "name": problem.name,
         "group": problem.group,
-        "problem": _entry(problem),
+        "problem": problem.entry,
         "contact": contact,
         "points": points,
     }
 
 
 CONTACT = (*SCALARS, "half_axis_x", "half_axis_y")
-
-
-def _entry(problem: VectorProblem) -> dict[str, Any]:
-    given = problem.problem
-    if isinstance(given, CoatedContact):
-        shape = {"radius": given.radius}
-        if given.indenter is not None:
-            shape = dict(zip(("radius_x", "radius_y"), given.indenter[1], strict=True))
-        loaded = shape | {"load": given.load}
-    else:
-        loaded = {"pressure": given.pressure, "load_radius": given.load_radius}
-    E, nu = given.substrate
-    return {
-        **loaded,
-        "friction": given.friction,
-        "coatings": [{"E": E1, "nu": nu1, "thickness": h} for E1, nu1, h in given.coatings],
-        "substrate": {"E": E, "nu": nu},
-    }
 
 
 def _written(value: float, uncertainty: float) -> tuple[float, float]:
@@ -92,16 +58,8 @@ def data_set(
 ) -> dict[str, Any]:
     """The whole data set as JSON content, checked against its schema. Raises ValueError."""
     sums = {name: hashlib.sha256(text.encode()).hexdigest() for name, text in csv_texts(vectors).items()}
-    content = {
-        "schema": VERSION,
-        "licence": LICENCE,
-        "cite": CITE,
-        "conventions": CONVENTIONS,
-        "made_by": made_by,
-        "checked": list(checked),
-        "sha256": sums,
-        "problems": list(vectors),
-    }
+    made = {"made_by": made_by, "checked": list(checked), "sha256": sums, "problems": list(vectors)}
+    content = {**shipped(), **made}
     VectorSet.model_validate_json(json.dumps(content))
     return content
 

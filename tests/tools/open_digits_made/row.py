@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from open_digits_made.problems import rounded
 from verification.problem.array_types import Array
 
 SCALARS = ("contact_radius", "approach", "peak_pressure")
@@ -32,3 +31,8 @@ def places(multiples: tuple[float, ...], a: float, *, sliding: bool = False) -> 
     """Multiples of ``a`` [m], rounded; of a sliding contact on either side."""
     found = [rounded(m * a) for m in multiples]
     return np.array(([-x for x in found[:0:-1]] if sliding else []) + found)
+
+
+def rounded(value: float, digits: int = 4) -> float:
+    """``value`` with ``digits`` significant digits."""
+    return float(f"{value:.{digits - 1}e}")

@@ -4,9 +4,6 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-VERSION: Literal["coatcheck-vectors/1"] = "coatcheck-vectors/1"
-LICENCE: Literal["CC0-1.0"] = "CC0-1.0"
-
 
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)

@@ -7,7 +7,7 @@ import pytest
 from case_texts import case_text
 
 from verification.cases.case_file import parse_case
-from verification.cases.graded_coating import Course, Table, moduli
+from verification.cases.graded_coating import GradedCourse, ModulusTable, moduli
 from verification.cases.toml_file import CaseError
 from verification.desk.contact_answer import answer, with_slicing
 from verification.desk.stack_text import described
@@ -19,7 +19,7 @@ TEXT = case_text(
     'thickness = "30 um"; residual_stress = "-1 GPa"',
     'E = "279 GPa"; nu = 0.21; thickness = "1 um"',
 )
-LINEAR = Course(course="linear", top=4e11, base=2e11)
+LINEAR = GradedCourse(course="linear", top=4e11, base=2e11)
 
 
 def parse(text, over=1):
@@ -28,9 +28,9 @@ def parse(text, over=1):
 
 def test_courses_at_the_middle_of_each_sub_layer():
     np.testing.assert_allclose(moduli(LINEAR, 4), [375e9, 325e9, 275e9, 225e9], rtol=1e-14)
-    found = moduli(Course(course="exponential", top=4e11, base=1e11), 2)
+    found = moduli(GradedCourse(course="exponential", top=4e11, base=1e11), 2)
     np.testing.assert_allclose(found, [4e11 * 0.25**0.25, 4e11 * 0.25**0.75], rtol=1e-14)
-    table = Table(depth=[0.0, 0.5, 1.0], E=[4e11, 2e11, 2e11])
+    table = ModulusTable(depth=[0.0, 0.5, 1.0], E=[4e11, 2e11, 2e11])
     np.testing.assert_allclose(moduli(table, 4), [350e9, 250e9, 200e9, 200e9], rtol=1e-14)
     assert moduli(3e11, 1) == (3e11,)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from verification.cases.graded_coating import Course, moduli
+from verification.cases.graded_coating import GradedCourse, moduli
 from verification.desk.answer_stresses import first_principal
 from verification.desk.contact_answer import answer, differences, summary
 from verification.problem.coated_contact import CoatedContact
@@ -157,7 +157,7 @@ def test_differences_are_by_key_with_both_uncertainties(solved):
 
 @pytest.mark.slow
 def test_sub_layers_converge_and_count_as_one_coating():
-    course, found = Course(course="linear", top=4e11, base=210e9), []
+    course, found = GradedCourse(course="linear", top=4e11, base=210e9), []
     bare = CoatedContact(3e-3, 20.0, (), (210e9, 0.3), 0.1)
     for n in (2, 4, 8):
         coatings = tuple((E, 0.25, 0.5 * bare.a_h / n) for E in moduli(course, n))

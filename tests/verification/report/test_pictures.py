@@ -9,7 +9,7 @@ from synthetic_results import INFO, STEEL, contact, result_of
 from verification.report.figures.field_pictures import THINNEST, Frame, pictures, plane_difference, rasterised
 from verification.report.report_material import Material
 from verification.report.report_page import render
-from verification.sampling.stress_plane import Plane, sample_plane
+from verification.sampling.stress_plane import StressPlane, sample_plane
 from verification.sources.references.hertz import Hertz
 
 HERTZ = Hertz(10e-3, 20.0, *STEEL)
@@ -18,7 +18,7 @@ SCALES = RESULT.problem["a_h"], RESULT.problem["p_h"]
 
 
 @pytest.fixture(scope="module")
-def plane() -> Plane:
+def plane() -> StressPlane:
     found = sample_plane((), {"fem_reference": HERTZ})
     (sigma,) = found.stress["fem_reference"]
     return replace(found, stress={"semianalytic": (sigma + 1e-5 * HERTZ.peak_pressure,)} | found.stress)
@@ -71,4 +71,4 @@ def test_a_method_without_a_picture_is_said_and_no_plane_is_no_picture(plane):
     assert plane_difference(alone, 1.0) is None
     assert "No picture by semi-analytical" in render(Material([RESULT], INFO, planes={"bare": alone}))
     assert pictures(None, *SCALES) is None
-    assert pictures(Plane(np.zeros(0), (), 0.0, {}, {}), *SCALES) is None
+    assert pictures(StressPlane(np.zeros(0), (), 0.0, {}, {}), *SCALES) is None

@@ -5,7 +5,7 @@ import pytest
 
 from verification.problem.quantity import IN_PLANE
 from verification.running.stored_fields import read_plane, write_plane
-from verification.sampling.stress_plane import Plane, depths_of, sample_plane
+from verification.sampling.stress_plane import StressPlane, depths_of, sample_plane
 from verification.sources.references.hertz import Hertz
 
 STEEL = Hertz(10e-3, 20.0, 210e9, 0.3)
@@ -40,7 +40,9 @@ def test_each_layer_has_both_its_interfaces():
 def test_a_plane_comes_back_as_it_was_written_nan_too(tmp_path, plane):
     spoiled = plane.stress["fem_reference"][0].copy()
     spoiled[0, 2, 3], spoiled[1, 0, 0] = np.nan, -np.inf
-    kept = Plane(plane.x, plane.depths, plane.radius, {"fem_reference": (spoiled,)}, {"semianalytic": "why"})
+    kept = StressPlane(
+        plane.x, plane.depths, plane.radius, {"fem_reference": (spoiled,)}, {"semianalytic": "why"}
+    )
     write_plane(tmp_path / "planes" / "x.json", kept, "the case")
     back = read_plane(tmp_path / "planes" / "x.json", "the case")
     np.testing.assert_array_equal(back.x, plane.x)

@@ -9,7 +9,7 @@ import semianalytic
 from verification.problem.coated_contact import CoatedContact, keywords
 from verification.sources.assumptions.contact_change import (
     RESOLUTION,
-    Curve,
+    ShearCurve,
     line_along_interface,
     of_goodman,
     of_sphere,
@@ -34,7 +34,7 @@ def test_shear_of_a_thin_coating_is_that_of_a_fine_line(ratio):
     coating = (ratio * E, NU, 0.05 * BARE.a_h)
     exact = integral_equation.solve(**keywords(replace(BARE, coatings=(coating,))), **RESOLUTION)
     a, h = exact.contact_radius, coating[2]
-    line = Curve(x := line_along_interface(a, h), exact.stress(x, 0.0, h, 0)[0, 2])
+    line = ShearCurve(x := line_along_interface(a, h), exact.stress(x, 0.0, h, 0)[0, 2])
     fine = exact.stress(a + h * np.linspace(-2, 1, 601), 0.0, h, 0)[0, 2]
     assert line.largest == pytest.approx(np.abs(fine).max(), rel=5e-4)
 

@@ -10,7 +10,7 @@ from verification.problem.coated_contact import CoatedContact, keywords
 from verification.sources.assumptions.contact_change import FLOOR
 from verification.sources.assumptions.finite_bodies import (
     RESOLUTIONS,
-    ElasticBall,
+    FiniteBall,
     change_at,
     of_half_spaces,
     on_disc,
@@ -40,7 +40,7 @@ def scalars(problem, thickness=1.0):
 
 @pytest.mark.parametrize("coatings", [(), ((E, NU, 0.1 * R), (E, NU, 0.01 * R))])
 def test_uniform_tension_is_exact(coatings):
-    ball = ElasticBall(R, (coatings, (E, NU)))
+    ball = FiniteBall(R, (coatings, (E, NU)))
     C11, C12, C22 = ball.modes(np.array([0.0, 2.0]))
     # sigma_zz = 1: S = cos^2 = 1/3 P0 + 2/3 P2, T = -sin cos = 1/3 dP2/dtheta
     assert C11[0] / 3 == pytest.approx((1 - 2 * NU) * R / (3 * E), rel=1e-13)
@@ -57,7 +57,7 @@ def test_coated_ball_under_uniform_pressure_is_lames():
     hollow = 1 - c**3
     interface = (inner + outer) / hollow / (core + (inner * c**3 + outer) / hollow)
     surface = (inner + outer * c**3 - interface * c**3 * (inner + outer)) / hollow
-    found = ElasticBall(1.0, (((E1, nu1, 1 - c),), (E2, nu2))).modes(np.array([0.0]))[0]
+    found = FiniteBall(1.0, (((E1, nu1, 1 - c),), (E2, nu2))).modes(np.array([0.0]))[0]
     assert found == pytest.approx(surface, rel=1e-13)
 
 
@@ -86,7 +86,7 @@ def test_disc_changes_the_approach_in_proportion_and_the_peak_with_the_cube_of_i
 
 def test_coating_of_the_balls_own_material_changes_nothing():
     x = np.linspace(0.0, 0.1 * R, 9)
-    bare, coated = (ElasticBall(R, (layer, (E, NU))) for layer in ((), ((E, NU, 0.05 * R),)))
+    bare, coated = (FiniteBall(R, (layer, (E, NU))) for layer in ((), ((E, NU, 0.05 * R),)))
     kernel = bare.beyond_half_space(x)
     assert coated.beyond_half_space(x) == pytest.approx(kernel, rel=1e-9)
     assert kernel == pytest.approx(kernel.T, rel=1e-12)

@@ -14,7 +14,7 @@ from verification.judging.verdict import Claim, Judged, Outcome, Verdict
 from verification.problem.line_profile import Profile
 from verification.regression.baseline_change import Regression, regression, updated
 from verification.regression.junit_xml import junit_xml
-from verification.regression.manifest import Difference, differences, manifest_of
+from verification.regression.manifest import ManifestDifference, differences, manifest_of
 from verification.regression.run_exit_codes import run_code
 from verification.running.case_result import CaseResult, RunInfo, SourceResult
 
@@ -131,8 +131,8 @@ def of_codes() -> Answers:
     yield "no case", run_code([], fine, passed=True), 3
     yield "a case that judges nothing", run_code([_result(kept=0)], fine, passed=True), 3
     yield "a self-test that failed", run_code([_result()], fine, passed=False), 1
-    less = Regression("known", None, (), judged=(Difference("known", "fewer", 1, True),))
-    more = Regression("known", None, (), judged=(Difference("known", "more", 1, False),))
+    less = Regression("known", None, (), judged=(ManifestDifference("known", "fewer", 1, True),))
+    more = Regression("known", None, (), judged=(ManifestDifference("known", "more", 1, False),))
     yield "less judged", run_code([_result()], less, passed=True), 6
     yield "more judged", run_code([_result()], more, passed=True), 0
     yield "less judged, not converged", run_code([_result(Outcome.NO_RESULT)], less, passed=True), 3

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import Uncertainty
+from verification.problem.coated_contact import ScalarUncertainty
 from verification.problem.point_answers import FIELDS, FLAT, ByFunctions, Points
 from verification.sources.references.hertz import Hertz
 
@@ -22,9 +22,11 @@ class Stated(Hertz):
     share: float = 1e-7
 
     @property
-    def uncertainty(self) -> Uncertainty:
+    def uncertainty(self) -> ScalarUncertainty:
         share = self.share
-        return Uncertainty(share * self.contact_radius, share * self.approach, share * self.peak_pressure)
+        return ScalarUncertainty(
+            share * self.contact_radius, share * self.approach, share * self.peak_pressure
+        )
 
     def error(self, points: Points | None, quantity: str, value: Any) -> Any:
         """``share`` of the peak pressure, of the approach or of the number itself."""
@@ -85,7 +87,7 @@ class Labelled(ByFunctions):
 
     contact_radius, approach, peak_pressure = 1e-4, 1e-6, 3e9
     stiffness = 6e7
-    uncertainty = Uncertainty(3e-9, 4e-12, 2e6, 5e1)
+    uncertainty = ScalarUncertainty(3e-9, 4e-12, 2e6, 5e1)
 
     def error(self, points: Points | None, quantity: str, value: Any) -> Any:
         return 1e-3 * value if quantity in FIELDS else getattr(self.uncertainty, quantity)

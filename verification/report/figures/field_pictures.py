@@ -27,7 +27,7 @@ from verification.page.source_labels import source_label
 from verification.problem.array_types import Array
 from verification.problem.quantity import IN_PLANE, von_mises
 from verification.report.report_words import stated
-from verification.sampling.stress_plane import Plane
+from verification.sampling.stress_plane import StressPlane
 from verification.sources.source_registry import METHODS
 
 LEFT, TOP, RIGHT, BOTTOM = 46.0, 12.0, 52.0, 32.0  # margins around the raster, in units of the drawing
@@ -197,7 +197,7 @@ TITLES = {"von_mises": "von Mises"}
 LOWEST, HIGHEST = -8.0, -3.0  # exponents of the difference over p_h; the same in all cases, to be compared
 
 
-def pictures(plane: Plane | None, a_h: float, p_h: float, case: str = "") -> dict[str, Any] | None:
+def pictures(plane: StressPlane | None, a_h: float, p_h: float, case: str = "") -> dict[str, Any] | None:
     """Von Mises stress, sigma_xx and sigma_xz side by side, below them the differences of both methods.
 
     With caption; None where there is nothing to draw.
@@ -244,7 +244,7 @@ def _quantity(sigma: Array, name: str) -> Array:
     return von_mises(sigma) if name == "von_mises" else sigma[list(IN_PLANE).index(name)]
 
 
-def plane_difference(plane: Plane, scale: float) -> float | None:
+def plane_difference(plane: StressPlane, scale: float) -> float | None:
     """Largest difference of the methods in any stress anywhere in the plane, over ``scale``."""
     if len(plane.stress) != 2 or not scale > 0:
         return None

@@ -44,7 +44,7 @@ class Slot(Generic[T]):
 
     @property
     def replies(self) -> int | None:
-        """Where the process answers; None where it does not run."""
+        """Handle of the answers of the process; None where it does not run."""
         return None if self.process is None else _pipe(self.process.stdout).fileno()
 
     def start(self) -> Task[T]:
@@ -145,7 +145,7 @@ class Slot(Generic[T]):
 
 
 def read_result(task: Task[T], seconds: float) -> T:
-    """What the file of ``task`` holds; what ``failed`` makes of the reason where it cannot be used."""
+    """Result in the file of ``task``; what ``failed`` makes of the reason where it cannot be used."""
     try:
         return task.read(read_checked(task.path))
     except (StoreError, ValueError, KeyError, TypeError, AttributeError) as error:
@@ -158,7 +158,7 @@ def _pipe(end: IO[bytes] | None) -> IO[bytes]:
 
 
 def _identity(path: Path) -> tuple[int, int] | None:
-    """What changes when ``path`` is written anew; None where there is nothing."""
+    """Identity of ``path``, another one when it is written anew; None where there is nothing."""
     try:
         found = path.stat(follow_symlinks=False)
     except OSError:

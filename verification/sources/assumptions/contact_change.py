@@ -106,7 +106,7 @@ def of_goodman(problem: CoatedContact) -> tuple[Change, Change]:
     tension = float(first(edge, 0.0, 0)[0][0]) / max(abs(_tension(exact)), floor)
     shear, coupled = _shear(exact), None
     if shear is not None:
-        coupled = Curve(shear.x, shear.values + first(shear.x, problem.interfaces[0], 0)[1])
+        coupled = ShearCurve(shear.x, shear.values + first(shear.x, problem.interfaces[0], 0)[1])
     peak, place = expansion.peak_change(f)
     beyond = (f * problem.dundurs_beta) ** 2 / 2
     radius, approach = f**2 * change.contact_radius, f**2 * change.approach
@@ -135,7 +135,7 @@ def _tension(exact: ExactSolution) -> float:
     return float(exact.stress(-exact.contact_radius, 0.0, 0.0)[0, 0])
 
 
-class Curve(NamedTuple):
+class ShearCurve(NamedTuple):
     """``values`` at ``x``, ascending."""
 
     x: Array
@@ -155,13 +155,13 @@ class Curve(NamedTuple):
 
 
 @lru_cache(maxsize=8)
-def _shear(exact: ExactSolution) -> Curve | None:
+def _shear(exact: ExactSolution) -> ShearCurve | None:
     """sigma_xz [Pa] along the first interface of the flat."""
     coatings = exact.fields[0].coatings
     if not coatings:
         return None
     x = line_along_interface(exact.contact_radius, h := coatings[0][2])
-    return Curve(x, exact.stress(x, 0.0, h, 0)[0, 2])
+    return ShearCurve(x, exact.stress(x, 0.0, h, 0)[0, 2])
 
 
 def line_along_interface(a: float, h: float) -> Array:
@@ -170,13 +170,13 @@ def line_along_interface(a: float, h: float) -> Array:
     if h >= THIN * a:
         return x
     edge = a + h * NEAR
-    # points that nearly coincide would leave the parabola of ``Curve`` to rounding
+    # points that nearly coincide would leave the parabola of ``ShearCurve`` to rounding
     step = edge[1] - edge[0]
     apart = np.maximum(edge[0] - np.abs(x), np.abs(x) - edge[-1]) > step / 2
     return np.sort(np.concatenate([x[apart], edge, -edge]))
 
 
-def _shear_change(before: Curve | None, after: Curve | None, floor: float) -> float | None:
+def _shear_change(before: ShearCurve | None, after: ShearCurve | None, floor: float) -> float | None:
     if before is None or after is None:
         return None
     return float((after.largest - before.largest) / max(before.largest, floor))

@@ -1,12 +1,12 @@
 """Bodies of finite size in place of half-spaces: a ball of the sphere's radius, a disc bonded to a support.
 
-Ball: series of Legendre polynomials, see ``ElasticBall``. Disc: layers on a rigid solid, whose rim is far
+Ball: series of Legendre polynomials, see ``FiniteBall``. Disc: layers on a rigid solid, whose rim is far
 away; it is as thick as the ball's radius, which ball-on-disc tests have (a ball of 10 mm on a disc of 5 mm).
 Both contacts, of the bodies and of half-spaces, have the gap of a sphere and are solved by
 ``integral_equation``.
 
 A rigid ball on a homogeneous disc of thickness t: the approach changes by a/t, radius and peak pressure by
-(a/t)^3; an elastic ball adds the changes of the order a/R that ``ElasticBall`` states.
+(a/t)^3; an elastic ball adds the changes of the order a/R that ``FiniteBall`` states.
 """
 
 from collections.abc import Mapping
@@ -36,7 +36,7 @@ PANEL, TAIL = 16, 36.0  # Gauss points in a panel of wavenumbers; exponent beyon
 
 
 @dataclass(frozen=True)
-class ElasticBall:
+class FiniteBall:
     """Elastic ball in axisymmetric contact: what it adds to the compliance of a half-space.
 
     radius : [m].   solid : coatings from the surface inwards, then (E, nu).
@@ -224,18 +224,18 @@ def of_half_spaces(problem: CoatedContact, thickness: float = THICKNESS) -> tupl
 
 
 def change_at(problem: CoatedContact, thickness: float, resolution: Mapping[str, Any]) -> Change:
-    """As ``of_half_spaces``, with the numerical parameters ``resolution`` of ``integral_equation.solve``."""
+    """Change as of ``of_half_spaces``, by the parameters ``resolution`` of ``integral_equation.solve``."""
     solve = partial(integral_equation.solve, gap=SPHERE, estimate_uncertainty=False, **resolution)
     beyond = None
     if problem.ball is not None:
         E, nu, coatings = problem.ball
-        beyond = ElasticBall(problem.radius, (coatings, (E, nu))).beyond_half_space
+        beyond = FiniteBall(problem.radius, (coatings, (E, nu))).beyond_half_space
     disc = on_disc(problem, thickness * problem.radius)
     return change_between(half_spaces(problem, SPHERE, **resolution), solve(**keywords(disc), beyond=beyond))
 
 
 def on_disc(problem: CoatedContact, thickness: float) -> CoatedContact:
-    """The same contact on a disc of ``thickness`` [m], coatings included, bonded to a rigid support.
+    """This contact on a disc of ``thickness`` [m], coatings included, bonded to a rigid support.
 
     Raises ValueError where the coatings are as thick as the disc.
     """

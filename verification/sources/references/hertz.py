@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import Uncertainty
+from verification.problem.coated_contact import ScalarUncertainty
 from verification.problem.point_answers import BALL, FLAT, ByFunctions
 
 Complex = NDArray[np.complex128]
@@ -100,9 +100,9 @@ class Hertz(ByFunctions):
         return 3 * self.load / (2 * np.pi * self.contact_radius**2)
 
     @property
-    def uncertainty(self) -> Uncertainty:
+    def uncertainty(self) -> ScalarUncertainty:
         """Zero: exact."""
-        return Uncertainty()
+        return ScalarUncertainty()
 
     def pressure(self, x: ArrayLike, y: ArrayLike = 0.0) -> Array:
         """p = p0 sqrt(1 - r^2/a^2) inside the contact, 0 outside [Pa]. Johnson (3.39)."""

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import Uncertainty
+from verification.problem.coated_contact import ScalarUncertainty
 from verification.problem.point_answers import ByFunctions
 
 
@@ -33,7 +33,7 @@ class HertzEllipse(ByFunctions):
     p0: float
     E_star: float
     along_y: bool = False
-    uncertainty: ClassVar[Uncertainty] = Uncertainty()  # zero: exact
+    uncertainty: ClassVar[ScalarUncertainty] = ScalarUncertainty()  # zero: exact
     diagnostics: ClassVar[None] = None
 
     @property

@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from verification.problem.array_types import Array, Ball, Coatings
-from verification.problem.coated_contact import Uncertainty
+from verification.problem.coated_contact import ScalarUncertainty
 from verification.problem.gauss_legendre import gauss_legendre, wavenumber_panels
 from verification.problem.point_answers import BALL, FLAT, ByFunctions, Points, by_functions
 from verification.problem.quantity import SCALARS
@@ -95,7 +95,7 @@ class ExactSolution(ByFunctions):
         return self.abel.peak
 
     @cached_property
-    def uncertainty(self) -> Uncertainty | None:
+    def uncertainty(self) -> ScalarUncertainty | None:
         """Twice the change when every quadrature is made coarser by a quarter, with the rounding."""
         if self.coarser is None:
             return None
@@ -103,7 +103,7 @@ class ExactSolution(ByFunctions):
         for name in ("contact_radius", "approach", "peak_pressure", "stiffness"):
             value = getattr(self, name)
             U[name] = 2 * abs(value - getattr(self.coarser, name)) + 1e-12 * value
-        return Uncertainty(**U, budget=tuple((n, "quadrature", U[n]) for n in SCALARS))
+        return ScalarUncertainty(**U, budget=tuple((n, "quadrature", U[n]) for n in SCALARS))
 
     @property
     def _rounding(self) -> float:

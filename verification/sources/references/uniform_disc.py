@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from scipy.special import ellipe, ellipkm1, j1
 
 from verification.problem.array_types import Array, Coatings
-from verification.problem.coated_contact import PrescribedLoad, Uncertainty
+from verification.problem.coated_contact import PrescribedLoad, ScalarUncertainty
 from verification.problem.point_answers import ByFunctions, Points, by_functions
 from verification.sources.references.hankel_field import HankelField
 
@@ -74,10 +74,10 @@ class DiscSolution(ByFunctions):
         return float(self.field.displacement(0.0, 0.0, 0.0)[2])
 
     @property
-    def uncertainty(self) -> Uncertainty:
+    def uncertainty(self) -> ScalarUncertainty:
         """For u_z at the origin, twice the change when every quadrature is coarser by a quarter."""
         U = float(self.sample(Points(0.0), "displacement").uncertainty[2])
-        return Uncertainty(approach=U, budget=(("approach", "quadrature", U),))
+        return ScalarUncertainty(approach=U, budget=(("approach", "quadrature", U),))
 
     @property
     def diagnostics(self) -> dict[str, float]:
