@@ -9,10 +9,9 @@ from verification.problem.array_types import Array
 from verification.regression.baseline_change import Baseline, Update
 from verification.regression.manifest import Manifest
 from verification.regression.number_drift import RELATIVE, TOLERANCE, Numbers
-from verification.running.checked_files import StoreError, read_checked, write_checked
-from verification.running.json_records import decode, encode
+from verification.running.checked_files import StoreError
+from verification.running.json_records import RecordFile
 
-SCHEMA = "coatcheck-baseline/2"
 DIGITS = 0.01  # of the least change that counts
 
 
@@ -41,16 +40,20 @@ class _Case:
 
 
 @dataclass(frozen=True, eq=False)
-class _File:
-    schema: str
+class _Stored:
     cases: dict[str, _Case]
     history: tuple[Update, ...]
     self_tests: dict[str, int] = field(default_factory=dict)
 
 
+_FILE = RecordFile(
+    _Stored, "baseline.json.xz", ("coatcheck-baseline/2",), "the baseline", "restore it or update it"
+)
+
+
 def path_in(folder: Path) -> Path:
     """Path of the baseline in ``folder``."""
-    return folder / "baseline.json.xz"
+    return _FILE.path_in(folder)
 
 
 def write_baseline(folder: Path, baseline: Baseline) -> Path:
@@ -58,33 +61,27 @@ def write_baseline(folder: Path, baseline: Baseline) -> Path:
 
     Raises ValueError where two profiles have one key, or a line has two sets of points.
     """
-    path = path_in(folder)
     cases = {
         name: _Case(
             baseline.digests[name],
             baseline.manifests[name],
             points_by_line(name, found),
-            tuple(_stored(n) for n in found),
+            tuple(map(_profile, found)),
         )
         for name, found in baseline.cases.items()
     }
-    write_checked(path, encode(_File(SCHEMA, cases, baseline.history, dict(baseline.self_tests))))
-    return path
+    return _FILE.write(folder, _Stored(cases, baseline.history, dict(baseline.self_tests)))
 
 
 def read_baseline(folder: Path) -> Baseline | None:
     """The baseline in ``folder``, None where there is none. Raises StoreError where it is damaged."""
-    path = path_in(folder)
-    if not path.exists():
+    file = _FILE.read(folder)
+    if file is None:
         return None
-    data = read_checked(path)
-    if data.get("schema") != SCHEMA:
-        raise StoreError(f"{path}: schema = {data.get('schema')!r}; this version reads {SCHEMA!r}")
     try:
-        file = decode(_File, data)
         numbers = {name: tuple(_numbers(p, c) for p in c.profiles) for name, c in file.cases.items()}
-    except (KeyError, ValueError) as error:
-        raise StoreError(f"{path}: not a baseline ({error}); restore it or update it") from None
+    except KeyError as error:
+        raise StoreError(f"{path_in(folder)}: no points of line {error}; restore it or update it") from None
     digests = {name: case.digest for name, case in file.cases.items()}
     manifests = {name: case.manifest for name, case in file.cases.items()}
     return Baseline(numbers, digests, file.history, manifests, file.self_tests)
@@ -102,7 +99,7 @@ def points_by_line(case: str, found: tuple[Numbers, ...]) -> dict[str, Array]:
     return lines
 
 
-def _stored(n: Numbers) -> _Profile:
+def _profile(n: Numbers) -> _Profile:
     U = None if n.uncertainty is None else _digits(n.uncertainty, 3)
     least = RELATIVE * n.scale if n.uncertainty is None else float(np.min(n.uncertainty))
     step = DIGITS * min(max(least, TOLERANCE * n.scale), RELATIVE * n.scale)
