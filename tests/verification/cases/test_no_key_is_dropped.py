@@ -91,7 +91,7 @@ KEYS = {
     "problem.ball.coatings.layers": ({"problem.ball.coatings.E": GRADED}, "4", "5"),
     "semianalytic.patches": ({}, "129", "65"),
     "semianalytic.conversion": ({}, '"split"', '"plain"'),
-    "semianalytic.edge.edge_correction": ({}, "true", "false"),
+    "semianalytic.edge_correction": ({}, "true", "false"),
     "semianalytic.approach": ({}, "4e-7", "5e-7"),
     "semianalytic.max_iterations": ({}, "100", "200"),
     "fem_reference.order": ({}, "2", "3"),
