@@ -130,7 +130,9 @@ ELLIPTICAL = """
 def solve(radius, load, substrate, indenter, coatings=()):
     from verification.sources.references.hertz_ellipse import pressed_ellipsoid
     E, nu = substrate
-    return vars(pressed_ellipsoid(*indenter[1], load, E, {nu}))
+    found = pressed_ellipsoid(*indenter[1], load, E, {nu})
+    names = "contact_radius", "approach", "peak_pressure"
+    return dict((name, getattr(found, name)) for name in names)
 """
 
 

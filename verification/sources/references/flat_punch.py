@@ -42,4 +42,4 @@ def pressed(
         raise ValueError(f"a = {a:g} m; a punch has a positive radius")
     equation = Equation(1.0, ((coatings, substrate),), a, nodes, panel, tail)
     phi, approach, stiffness = equation.at(a)
-    return Pressed(stiffness / (2 * a * equation.E_star), equation.load(a, phi), approach)
+    return Pressed(stiffness / (2 * a * equation.E_star), equation.carried(a, phi), approach)

@@ -237,9 +237,9 @@ class Equation:
         # Nystrom's interpolation gives phi at the edge, where it must vanish.
         edge = unit * np.array([1.0, at_edge]) - (K[-1, :-1] * a * self.weight) @ phi
         delta = edge[1] / edge[0]
-        return phi @ np.array([delta, -1.0]), float(delta), self.load(a, phi[:, 0])
+        return phi @ np.array([delta, -1.0]), float(delta), self.carried(a, phi[:, 0])
 
-    def load(self, a: float, phi: Array) -> float:
+    def carried(self, a: float, phi: Array) -> float:
         """2 pi int_0^a phi dt [N]."""
         return float(2 * np.pi * a * (self.weight @ phi))
 
@@ -250,7 +250,7 @@ def _under_load(equation: Equation, load: float, friction: float, panel: int, ta
 
     def excess(log_a: float) -> float:
         a = float(np.exp(log_a))
-        carried = equation.load(a, equation.at(a)[0])
+        carried = equation.carried(a, equation.at(a)[0])
         if not carried > 0:
             raise ValueError(
                 f"{load:g} N on a = {a:g} m: the layers' compliance loses its digits; check the moduli"
