@@ -7,7 +7,6 @@ from verification.guests.exam_subjects import subject_of
 from verification.guests.guest_description import Guest, Supports
 from verification.guests.guest_protocol import VERSION, Answer
 from verification.guests.guest_verdicts import judged
-from verification.guests.slip_diagnosis import slips
 from verification.running.case_result import from_json
 from verification.running.checked_files import read_checked
 
@@ -37,8 +36,3 @@ def result_of(case, exam, values, guest=GUEST):
         if q in wanted.get(line, ()):
             plain.setdefault(line, {})[q] = float(value[0]) if line == "contact" else value.tolist()
     return judged(guest, case, exam, [Solved(Answer(protocol=VERSION, id="x", values=plain), 0.0)])
-
-
-def slips_of(case, exam, values):
-    """The slips that are named where a guest gives ``values``, as of ``result_of``."""
-    return slips(result_of(case, exam, values), GUEST.name)

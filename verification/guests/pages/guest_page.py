@@ -12,7 +12,6 @@ from markupsafe import Markup
 from verification.guests.case_exam import profiles_of
 from verification.guests.exam_subjects import exact_profile, exact_radius, reference_of
 from verification.guests.examination import Examined
-from verification.guests.slip_diagnosis import UNEXPLAINED, slips
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.figures import can_draw
 from verification.page.html_page import render_sections
@@ -133,7 +132,10 @@ def digits(difference: float | None) -> str:
 
 def _quantities(found: Examined) -> Section:
     """A row for each quantity, the worst first, with its likely reason: what to look at."""
-    reasons = _reasons(found)
+    reasons = [
+        (next(iter(by.values())).message, {quantity for cause in by.values() for quantity, _ in cause.places})
+        for by in found.causes.values()
+    ]
     rows: list[tuple[int, float, Row]] = []
     for quantity in dict.fromkeys(claim.quantity for _, claim, _ in found.comparisons):
         verdicts = [one for one in found.comparisons if one[1].quantity == quantity]
@@ -148,7 +150,6 @@ def _quantities(found: Examined) -> Section:
             where = result.title + ("" if claim.line == "contact" else f", {claim.line}")
         answered = len(verdicts) - count[Outcome.UNSUPPORTED]
         why = [message for message, quantities in reasons if quantity in quantities]
-        why = [message for message in why if not message.startswith(UNEXPLAINED)] or why[:1]
         cells = (
             Cell(quantity, note=QUANTITIES[quantity].meaning),
             *([words("; ".join(why[:MOST_REASONS]))] if reasons else []),
@@ -169,15 +170,6 @@ def _quantities(found: Examined) -> Section:
         [line for _, _, line in rows],
     )
     return Section("quantities", "Which quantity is wrong?", [Part("", [table])])
-
-
-def _reasons(found: Examined) -> list[tuple[str, list[str]]]:
-    """Each likely slip with the quantity of every place; unexplained differences last."""
-    by: dict[str, list[str]] = {}
-    for result in found.results:
-        for slip in slips(result, found.guest.name):
-            by.setdefault(slip.message, []).extend(quantity for quantity, _ in slip.places)
-    return sorted(by.items(), key=lambda item: (item[0].startswith(UNEXPLAINED), -len(item[1])))
 
 
 def _cases(found: Examined) -> Section:
