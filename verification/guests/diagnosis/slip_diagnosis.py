@@ -24,7 +24,7 @@ from verification.guests.diagnosis.wrong_outputs import (
     WrongOutput,
     wrong_outputs,
 )
-from verification.guests.exam_subjects import SPHERE, SQUARE, Subject, exact_radius, reference_of
+from verification.guests.exam_subjects import SPHERE, Subject, exact_radius, reference_of
 from verification.judging.verdict import Outcome
 from verification.problem.array_types import Array
 from verification.problem.quantity import SCALARS, unit_of
@@ -38,6 +38,8 @@ EXPLAINED = 0.1  # of its misfit may remain at a place
 SHARE = 0.9  # of the failed comparisons that has to be explained
 ALIKE = 0.06  # mean misfit in ln of the contact's numbers, within which another problem is looked at
 MOST_INPUTS = 4
+STRETCHED = ((2.0, "doubled", "r for 2 r"), (0.5, "halved", "the diameter for a"))
+DEPTHS = 8  # of a line downwards
 
 
 @dataclass(frozen=True)
@@ -69,14 +71,33 @@ class Diagnosis:
     @cached_property
     def exact(self) -> Values:
         """The exact values."""
-        reference = reference_of(self.result.problem)
-        return {(p.quantity, p.line): p.value for p in self.result.profiles if p.source == reference}
+        return self._values_of(reference_of(self.result.problem))
 
     @cached_property
     def given(self) -> Values:
         """The answers, where all of a line are finite."""
-        mine = {(p.quantity, p.line): p.value for p in self.result.profiles if p.source == self.guest}
+        mine = self._values_of(self.guest)
         return {k: g for k, g in mine.items() if k in self.exact and np.isfinite(g).all()}
+
+    def _values_of(self, source: str) -> Values:
+        """The values of ``source``, at a few of the depths of a line, each of which costs an evaluation."""
+        own = (p for p in self.result.profiles if p.source == source)
+        return {(p.quantity, p.line): p.value[:: self._steps[p.line]] for p in own}
+
+    @cached_property
+    def _steps(self) -> dict[str, int]:
+        """Every how many points of each line are looked at."""
+        steps = {"contact": 1}
+        for p in self.result.profiles:
+            if p.line not in steps:
+                deep = np.ptp(self.case.line(p.line).points(p.position)[2]) > 0
+                steps[p.line] = max(1, p.position.size // DEPTHS) if deep else 1
+        return steps
+
+    @cached_property
+    def positions(self) -> dict[str, Array]:
+        """Those along each line."""
+        return {p.line: p.position[:: self._steps[p.line]] for p in self.result.profiles}
 
     @cached_property
     def caps(self) -> dict[Key, float]:
@@ -160,9 +181,8 @@ class Diagnosis:
         """The exact values of another problem, or at other places."""
         problem = next((slip.problem for slip in slips if isinstance(slip, WrongInput)), self.case.problem)
         places = next((slip for slip in slips if isinstance(slip, WrongPlaces)), RIGHT)
-        positions = {p.line: p.position for p in self.result.profiles}
         try:
-            found = other_values(self.case, problem, positions, set(self.given), places)
+            found = other_values(self.case, problem, self.positions, set(self.given), places)
         except (ValueError, ArithmeticError):  # a problem beyond the reference
             found = {}
         return {k: found.get(k, np.full_like(v, np.nan)) for k, v in self.exact.items()}
@@ -179,8 +199,8 @@ class Diagnosis:
     def _judged(self) -> dict[str, Array]:
         """The points of each line on the surface that lie away from the contact edge."""
         a, zone = exact_radius(self.result), max([EDGE, *(c.edge for c, _ in self.result.verdicts)])
-        lines = {p.line: p.position for p in self.result.profiles}
-        return {k: np.abs(np.abs(x) - a) >= zone * a for k, x in lines.items() if k.endswith("surface")}
+        lines = {k: x for k, x in self.positions.items() if k.endswith("surface")}
+        return {k: np.abs(np.abs(x) - a) >= zone * a for k, x in lines.items()}
 
     def _cost(self, misfits: dict[Key, float | None]) -> float:
         """Sum of the logarithms of the misfits; one that is not known counts as before."""
@@ -209,25 +229,23 @@ class Diagnosis:
 
     def _slips(self) -> Iterator[Slip]:
         """In the order in which they act: of the input, of the places, of the output."""
-        yield from self._inputs()
+        inputs = self._inputs()
+        yield from inputs
         a, p = exact_radius(self.result), self.case.problem
         if p.friction:
             text = "mirrored in x: is sliding, and the friction q on the solid, along +x?"
             yield WrongPlaces("sliding along -x", text, mirror=-1.0)
-        for stretch, text in ((2.0, "doubled: r for 2 r?"), (0.5, "halved: the diameter 2 a in place of a?")):
-            yield WrongPlaces(
-                f"positions {text.split(':')[0]}", f"as if every position were {text}", stretch=stretch
-            )
+        for stretch, how, why in () if inputs else STRETCHED:
+            text = f"as if every position were {how}: {why}?"
+            yield WrongPlaces(f"positions {how}", text, stretch=stretch)
         key = ("pressure", "surface")
-        if key in self.given and self.case.load != SQUARE:
-            x = next(q.position for q in self.result.profiles if (q.quantity, q.line) == key)
-            if shift := fitted_shift(x, self.exact[key], self.given[key], a):
-                text = f"shifted by {shift:+.3g} m = {shift / a:+.3g} a in x: half a cell?"
-                yield WrongPlaces("shift", text, shift=shift)
-        points = {}
-        for line, at in {q.line: q.position for q in self.result.profiles if q.line != "contact"}.items():
-            x, y, _ = self.case.line(line).points(at)
-            points[line] = x, y
+        given = self.given.get(key)
+        shift = 0.0 if given is None else fitted_shift(self.positions["surface"], self.exact[key], given, a)
+        if shift:
+            text = f"shifted by {shift:+.3g} m = {shift / a:+.3g} a in x: half a cell?"
+            yield WrongPlaces("shift", text, shift=shift)
+        along = ((line, x) for line, x in self.positions.items() if line != "contact")
+        points = {line: self.case.line(line).points(x)[:2] for line, x in along}
         yield from wrong_outputs(self.exact, self.given, points)
 
     def _inputs(self) -> list[WrongInput]:
