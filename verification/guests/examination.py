@@ -12,7 +12,7 @@ from verification.guests.case_exam import claims_of, exam_task, kept_exam, quest
 from verification.guests.diagnosis.slip_diagnosis import Cause, causes_of
 from verification.guests.doors.ask_guest import ask_task, end_programs
 from verification.guests.doors.file_door import pack
-from verification.guests.doors.program_door import Solved
+from verification.guests.doors.program_door import TimedAnswer
 from verification.guests.exam_subjects import Subject, subjects_of
 from verification.guests.guest_description import Guest
 from verification.guests.guest_verdicts import judged, refused
@@ -31,7 +31,7 @@ class Examined:
 
     guest: Guest
     results: tuple[CaseResult, ...]
-    replies: dict[str, list[Solved]]
+    replies: dict[str, list[TimedAnswer]]
     subjects: tuple[Subject, ...]
 
     @cached_property

@@ -19,7 +19,7 @@ from verification.guests.doors.ask_guest import answered
 from verification.guests.doors.file_door import pack, read_answer
 from verification.guests.exam_subjects import PLANE, REFERENCE, subject_of
 from verification.guests.guest_description import read_guest
-from verification.guests.guest_protocol import VERSION, Answer, ProtocolError, Question
+from verification.guests.guest_protocol import VERSION, GuestAnswer, ProtocolError, Question
 from verification.guests.guest_verdicts import judged
 from verification.judging.verdict import Outcome
 from verification.problem.quantity import STRESSES
@@ -273,7 +273,7 @@ def test_files_that_are_filled_in_wrongly_are_named(tmp_path):
 
 def test_the_schema_of_the_package_is_that_of_the_code():
     _, definitions = models_json_schema(
-        [(Question, "validation"), (Answer, "validation")],
+        [(Question, "validation"), (GuestAnswer, "validation")],
         title="coatcheck guest protocol",
         description=VERSION,
     )
