@@ -141,7 +141,7 @@ def run(
         info = run_info(shlex.join(["coatcheck", "guest", "run", guest, *cases]), started, jobs)
         page = folder / "report.html"
         texts = {
-            "junit.xml": junit_xml(found.results, info),
+            "junit.xml": junit_xml(found.results, info, skipped=(Outcome.UNSUPPORTED, Outcome.INCONCLUSIVE)),
             "report.json": report_json(found, info),
             "badge.svg": badge(found),
             "report.html": render(found, info),

@@ -12,6 +12,7 @@ from itertools import combinations
 from math import log
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from verification.guests.diagnosis.other_solutions import RIGHT, WrongPlaces, other_values
@@ -128,8 +129,8 @@ class Diagnosis:
         found = []
         after = self._misfits(slips, best)
         for number in best:
-            less = self._misfits(slips, tuple(n for n in best if n != number))
-            places = tuple(k for k in self.wrong if self._right(k, after[k]) and not self._right(k, less[k]))
+            rest = self._misfits(slips, tuple(n for n in best if n != number))
+            places = tuple(k for k in self.wrong if self._right(k, after[k]) and not self._right(k, rest[k]))
             slip = slips[number]
             found.append(Cause(slip.name, _message(slip), places))
         return tuple(sorted(found, key=lambda cause: -len(cause.places)))
@@ -137,7 +138,7 @@ class Diagnosis:
     def _best(self, slips: list[Slip]) -> tuple[int, ...] | None:
         """Numbers of the slips of the set of the least cost that explains enough."""
         beam: list[tuple[int, ...]] = [()]
-        cost = {(): self._cost(self._misfits(slips, ()))}
+        cost: dict[tuple[int, ...], float] = {(): self._cost(self._misfits(slips, ()))}
         enough: list[tuple[int, ...]] = []
         for _ in range(MOST):
             longer = {
@@ -196,7 +197,7 @@ class Diagnosis:
         return float(np.linalg.norm((g - p)[keep])) / size if size else 0.0
 
     @cached_property
-    def _judged(self) -> dict[str, Array]:
+    def _judged(self) -> dict[str, NDArray[np.bool_]]:
         """The points of each line on the surface that lie away from the contact edge."""
         a, zone = exact_radius(self.result), max([EDGE, *(c.edge for c, _ in self.result.verdicts)])
         lines = {k: x for k, x in self.positions.items() if k.endswith("surface")}

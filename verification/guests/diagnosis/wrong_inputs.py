@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import accumulate
 from math import pi
 
@@ -83,7 +84,7 @@ def _changes(p: CoatedContact) -> dict[str, Change]:
         found["no friction"] = lambda p: replace(p, friction=0.0)
     for factor in THOUSANDS if p.coatings else (*THOUSANDS, *MILLIONS):
         by = f"times {factor:g}: a factor of units"
-        found[f"E {by}"] = _materials(lambda E, nu, f=factor: (f * E, nu))
+        found[f"E {by}"] = _materials(partial(_times, factor))
         found[f"R {by}"] = _radius(factor)
         found[f"W {by}"] = _load(factor)
     return found
@@ -91,6 +92,10 @@ def _changes(p: CoatedContact) -> dict[str, Change]:
 
 def _modulus(of: Callable[[float, float], float]) -> Callable[[float, float], Material]:
     return lambda E, nu: (of(E, nu), nu)
+
+
+def _times(factor: float, E: float, nu: float) -> Material:
+    return factor * E, nu
 
 
 def _plane_stress(E: float, nu: float) -> Material:

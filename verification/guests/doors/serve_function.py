@@ -168,7 +168,8 @@ def values_of(result: Any, problem: Load, question: Question) -> Given:
     sought = (set(question.contact) - set(given.values.get("contact", {}))) & {*PEAKS, *BALL_PEAKS}
     if isinstance(problem, CoatedContact) and not whole and sought & set(PEAKS) and guest.gives("stress"):
         with given.without("contact", sought & set(PEAKS)):
-            search = Search(AroundExact(result, question.edge or float(guest.contact_radius)), problem)
+            around: Any = AroundExact(result, question.edge or float(guest.contact_radius))
+            search = Search(around, problem)
             found = search.largest(guest.stress(search.x, 0.0, 0.0, layer=0)[0, 0], None)
             for name, value in zip(PEAKS, (found.value, found.place), strict=True):
                 given.put("contact", name, value, None)
