@@ -56,6 +56,7 @@ class GuestFile(Strict):
     """The keys of a guest file.
 
     callable, command, results : the way in, one of the three.
+    python : the interpreter of ``callable``, of an environment with numpy; coatcheck's own unless given.
     claim : largest relative difference that the code claims to have; None where it does not say.
     edge : half-width of a zone around the contact edge that is left out, as a fraction of a.
     refine : numerical parameter of the refinement study with its values, coarse to fine.
@@ -64,6 +65,7 @@ class GuestFile(Strict):
 
     name: Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]{1,60}$")]
     callable: Word | None = None
+    python: Word | None = None
     command: Annotated[list[Word], Field(min_length=1, max_length=50)] | None = None
     results: Word | None = None
     claim: Annotated[float, Field(gt=0, le=1)] | None = None
@@ -84,6 +86,8 @@ class GuestFile(Strict):
             raise ValueError(
                 f"needs exactly one of callable, command, results, not {' and '.join(given) or 'none'}"
             )
+        if self.python is not None and self.callable is None:
+            raise ValueError(f"python = {self.python!r} runs a callable, and none is given")
         if self.callable is not None and not _PLACE.fullmatch(self.callable):
             raise ValueError(f"callable = {self.callable!r}; give it as module:function")
         if self.name in SOURCES:

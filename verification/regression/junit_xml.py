@@ -25,8 +25,7 @@ def junit_xml(
     DISAGREES is a failure, NO_RESULT an error. INCONCLUSIVE is a failure too, of its own type: only
     AGREES passes, and a skipped test counts as passed in most readers of this format. UNSUPPORTED, what a
     guest does not give, is skipped.
-    skipped : outcomes that count as neither passed nor failed; of guests INCONCLUSIVE too, which is no error of
-    theirs.
+    skipped : outcomes that neither pass nor fail; of guests INCONCLUSIVE too, which is no error of theirs.
     tests : what each self-test found wrong, "" where it passed.
     """
     root = Element("testsuites", name="coatcheck", time=f"{info.seconds:.3f}")

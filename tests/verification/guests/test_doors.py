@@ -174,6 +174,21 @@ def test_init_writes_a_guest_that_runs_as_it_is(tmp_path):
     assert coatcheck("guest", "init", "mine", cwd=tmp_path).returncode == 2
 
 
+def test_a_function_in_an_environment_of_its_own_gets_the_same_verdicts(tmp_path):
+    shutil.copytree(EXAMPLES / "start", tmp_path / "g")
+    text = (tmp_path / "g" / "guest.toml").read_text()
+    (tmp_path / "g" / "guest.toml").write_text(
+        text.replace("\n", f"\npython = {json.dumps(sys.executable)}\n", 1)
+    )
+    (tmp_path / "g" / "adapter.py").write_text(
+        (tmp_path / "g" / "adapter.py").read_text()
+        + "\n\nimport sys\nassert 'pydantic' not in sys.modules and 'scipy' not in sys.modules\n"
+    )
+    done = coatcheck("guest", "check", "g", cwd=tmp_path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "4 of 4" in done.stdout
+
+
 def test_judge_judges_what_was_packed(tmp_path):
     assert coatcheck("guest", "pack", "mine", "01_uncoated_steel", cwd=tmp_path).returncode == 0
     done = coatcheck("guest", "judge", "mine", "--json", cwd=tmp_path)
@@ -258,8 +273,7 @@ def test_files_that_are_filled_in_wrongly_are_named(tmp_path):
     contact.write_text(empty[0].replace("contact_radius,m,", "contact_radius,m,8.66e-5"))
     assert read_answer(guest, case, question).values == {"contact": {"contact_radius": 8.66e-5}}
     contact.write_text(empty[0].replace("contact_radius,m,", "contact_radius,m,wide"))
-    with pytest.raises(ProtocolError, match=r"contact\.csv"):
-        read_answer(guest, case, question)
+    assert "contact.csv" in read_answer(guest, case, question).failed["contact"]["contact_radius"]
     contact.write_text(empty[0])
     points.write_text("\n".join(empty[1].splitlines()[:-1]))
     with pytest.raises(ProtocolError, match="once"):
@@ -267,8 +281,7 @@ def test_files_that_are_filled_in_wrongly_are_named(tmp_path):
     lines = empty[1].splitlines()
     lines[1] = lines[1].replace("0,,,,-", "0,1e9,,,-")
     points.write_text("\n".join(lines))
-    with pytest.raises(ProtocolError, match="pressure"):
-        read_answer(guest, case, question)
+    assert "pressure" in read_answer(guest, case, question).failed["surface"]["pressure"]
 
 
 def test_the_schema_of_the_package_is_that_of_the_code():

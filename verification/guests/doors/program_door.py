@@ -142,6 +142,8 @@ class Program:
 
 def command_of(guest: Guest) -> tuple[str, ...]:
     """The program of ``guest``: its own, or that which calls its Python function."""
+    if guest.callable is not None and guest.python is not None:
+        return (guest.python, str(Path(__file__).with_name("own_python.py")), guest.callable)
     if guest.callable is not None:
         return (sys.executable, "-m", "verification.guests.doors.serve_function", guest.callable)
     return tuple(guest.command or ())
