@@ -100,7 +100,7 @@ def answered(function: Any, question: dict[str, Any]) -> dict[str, Any]:
         except Exception as error:
             found["failed"].setdefault(line, {}).update(dict.fromkeys(quantities, message(error)))
 
-    get = result.get if isinstance(result, dict) else lambda name: getattr(result, name, None)
+    get: Any = result.get if isinstance(result, dict) else lambda name: getattr(result, name, None)
     for name in question["contact"]:
         put("contact", [name], lambda name=name: {} if get(name) is None else {name: float(get(name))})
     peaks = {"largest_tension", "tension_place"} & set(question["contact"])
