@@ -2,12 +2,11 @@
 
 from verification.cases.case_file import read_case, shipped_cases
 from verification.guests.case_exam import claims_of, exam_path, prepare, question_of
-from verification.guests.doors.program_door import Solved
+from verification.guests.doors.program_door import TimedAnswer
 from verification.guests.exam_subjects import subject_of
 from verification.guests.guest_description import Guest, Supports
-from verification.guests.guest_protocol import VERSION, Answer
+from verification.guests.guest_protocol import VERSION, GuestAnswer
 from verification.guests.guest_verdicts import judged
-from verification.guests.slip_diagnosis import slips
 from verification.running.case_result import from_json
 from verification.running.checked_files import read_checked
 
@@ -36,9 +35,4 @@ def result_of(case, exam, values, guest=GUEST):
     for (q, line), value in values.items():
         if q in wanted.get(line, ()):
             plain.setdefault(line, {})[q] = float(value[0]) if line == "contact" else value.tolist()
-    return judged(guest, case, exam, [Solved(Answer(protocol=VERSION, id="x", values=plain), 0.0)])
-
-
-def slips_of(case, exam, values):
-    """The slips that are named where a guest gives ``values``, as of ``result_of``."""
-    return slips(result_of(case, exam, values), GUEST.name)
+    return judged(guest, case, exam, [TimedAnswer(GuestAnswer(protocol=VERSION, id="x", values=plain), 0.0)])

@@ -6,19 +6,19 @@ from typing import Any
 
 import numpy as np
 
-from verification.guests.exam_subjects import SquareLoad, Subject, reference_of
+from verification.guests.exam_subjects import SquareLoad, Subject, exact_radius, reference_of
 from verification.guests.guest_description import Guest
 from verification.guests.guest_protocol import (
-    Answer,
-    Disc,
-    ElasticBall,
-    Ellipsoid,
+    DiscProblem,
+    EllipsoidProblem,
+    GuestAnswer,
+    GuestBall,
     Layer,
     LineOfPoints,
     Problem,
     Question,
-    Sphere,
-    Square,
+    SphereProblem,
+    SquareProblem,
 )
 from verification.judging.verdict import Claim
 from verification.problem.array_types import Coatings
@@ -90,7 +90,7 @@ def question_of(
     m = guest.factor("m")
     wanted: dict[str, list[str]] = {}
     for claim in claims:
-        if guest.gives(claim.quantity):
+        if guest.lack(claim.quantity) is None:
             wanted.setdefault(claim.line, []).append(claim.quantity)
     lines = []
     for name, quantities in wanted.items():
@@ -111,6 +111,8 @@ def question_of(
         parameter=dict(parameter),
         contact=wanted.get("contact", []),
         lines=lines,
+        edge=exact_radius(exam) / m,
+        units=guest.units.model_dump(),
     )
 
 
@@ -125,20 +127,20 @@ def _in_units(case: Subject, guest: Guest) -> Problem:
     E, nu = problem.substrate
     solid: dict[str, Any] = {"coatings": materials(problem.coatings), "substrate": Layer(E=E / Pa, nu=nu)}
     if isinstance(problem, SquareLoad):
-        return Square(side=problem.side / m, pressure=problem.pressure / Pa, **solid)
+        return SquareProblem(side=problem.side / m, pressure=problem.pressure / Pa, **solid)
     if not isinstance(problem, CoatedContact):
-        return Disc(load_radius=problem.load_radius / m, pressure=problem.pressure / Pa, **solid)
+        return DiscProblem(load_radius=problem.load_radius / m, pressure=problem.pressure / Pa, **solid)
     solid |= {"load": problem.load / N, "friction": problem.friction}
     if problem.indenter is not None:
         along, across = problem.indenter[1]
-        return Ellipsoid(radius_x=along / m, radius_y=across / m, **solid)
-    ball = problem.ball and ElasticBall(
+        return EllipsoidProblem(radius_x=along / m, radius_y=across / m, **solid)
+    ball = problem.ball and GuestBall(
         E=problem.ball[0] / Pa, nu=problem.ball[1], coatings=materials(problem.ball[2])
     )
-    return Sphere(radius=problem.radius / m, ball=ball, **solid)
+    return SphereProblem(radius=problem.radius / m, ball=ball, **solid)
 
 
-def profiles_of(answer: Answer, exam: CaseResult, guest: Guest) -> tuple[Profile, ...]:
+def profiles_of(answer: GuestAnswer, exam: CaseResult, guest: Guest) -> tuple[Profile, ...]:
     """Values and uncertainties of ``answer``, in the units of ``guest``, as profiles in SI."""
     places = {p.line: p.position for p in exam.profiles}
     found = []

@@ -9,9 +9,10 @@ from typing import Any
 
 from verification.cases.case_file import Case
 from verification.guests.case_exam import claims_of, exam_task, kept_exam, question_of
+from verification.guests.diagnosis.slip_diagnosis import Cause, causes_of
 from verification.guests.doors.ask_guest import ask_task, end_programs
 from verification.guests.doors.file_door import pack
-from verification.guests.doors.program_door import Solved
+from verification.guests.doors.program_door import TimedAnswer
 from verification.guests.exam_subjects import Subject, subjects_of
 from verification.guests.guest_description import Guest
 from verification.guests.guest_verdicts import judged, refused
@@ -30,12 +31,28 @@ class Examined:
 
     guest: Guest
     results: tuple[CaseResult, ...]
-    replies: dict[str, list[Solved]]
+    replies: dict[str, list[TimedAnswer]]
+    subjects: tuple[Subject, ...]
 
     @cached_property
     def comparisons(self) -> list[tuple[CaseResult, Claim, Verdict]]:
         """Every comparison of every case."""
         return [(result, claim, verdict) for result in self.results for claim, verdict in result.verdicts]
+
+    @cached_property
+    def causes(self) -> dict[str, dict[str, Cause]]:
+        """The likely slips by name, of each the cases in which it explains wrong answers."""
+        found: dict[str, dict[str, Cause]] = {}
+        for case, result in zip(self.subjects, self.results, strict=True):
+            for cause in causes_of(case, result, self.guest.name):
+                found.setdefault(cause.name, {})[result.name] = cause
+        return dict(sorted(found.items(), key=lambda item: -sum(len(c.places) for c in item[1].values())))
+
+    @cached_property
+    def explained(self) -> set[tuple[str, str, str]]:
+        """Case, quantity, line of each wrong answer that a likely slip explains."""
+        by = (one for cases in self.causes.values() for one in cases.items())
+        return {(case, *place) for case, cause in by for place in cause.places}
 
     @cached_property
     def total(self) -> Counter[Outcome]:
@@ -96,7 +113,7 @@ def examined(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve, jo
             results.append(judged(guest, case, exams[case.name], replies[case.name]))
         else:
             results.append(exams[case.name])
-    return Examined(guest, tuple(results), replies)
+    return Examined(guest, tuple(results), replies, subjects)
 
 
 def packed_cases(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve) -> int:

@@ -5,6 +5,7 @@ callable = "adapter:solve"     # or command = ["./adapter"], or results = "answe
 """
 
 import re
+from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from itertools import pairwise
 from pathlib import Path
@@ -31,6 +32,7 @@ class Supports(Strict):
 
     ellipsoid : an indenter with two radii of curvature.
     loads : prescribed ones, each a uniform pressure on a disc or on a square.
+    lacks : quantities that it does not give.
     """
 
     coatings: Annotated[int, Field(ge=0, le=50)] = 0
@@ -39,10 +41,11 @@ class Supports(Strict):
     friction: bool = False
     stress: bool = False
     loads: Annotated[list[Literal["disc", "square"]], Field(max_length=2)] = Field(default=[])
+    lacks: Annotated[list[Word], Field(max_length=50)] = Field(default=[])
 
 
-class Units(Strict):
-    """Units of the code; numbers are converted on the way to it and back."""
+class GuestUnits(Strict):
+    """GuestUnits of the code; numbers are converted on the way to it and back."""
 
     length: Literal["m", "mm", "um", "nm", "inch", "in"] = "m"
     stress: Literal["Pa", "kPa", "MPa", "GPa", "psi", "ksi"] = "Pa"
@@ -53,6 +56,7 @@ class GuestFile(Strict):
     """The keys of a guest file.
 
     callable, command, results : the way in, one of the three.
+    python : the interpreter of ``callable``, of an environment with numpy; coatcheck's own unless given.
     claim : largest relative difference that the code claims to have; None where it does not say.
     edge : half-width of a zone around the contact edge that is left out, as a fraction of a.
     refine : numerical parameter of the refinement study with its values, coarse to fine.
@@ -61,6 +65,7 @@ class GuestFile(Strict):
 
     name: Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]{1,60}$")]
     callable: Word | None = None
+    python: Word | None = None
     command: Annotated[list[Word], Field(min_length=1, max_length=50)] | None = None
     results: Word | None = None
     claim: Annotated[float, Field(gt=0, le=1)] | None = None
@@ -68,7 +73,7 @@ class GuestFile(Strict):
     time_limit: Seconds = 120.0
     homepage: Text | None = None
     supports: Supports = Supports()
-    units: Units = Units()
+    units: GuestUnits = GuestUnits()
     refine: Annotated[
         dict[str, Annotated[list[Level], Field(min_length=3, max_length=12)]], Field(max_length=1)
     ] = Field(default_factory=dict)
@@ -81,6 +86,8 @@ class GuestFile(Strict):
             raise ValueError(
                 f"needs exactly one of callable, command, results, not {' and '.join(given) or 'none'}"
             )
+        if self.python is not None and self.callable is None:
+            raise ValueError(f"python = {self.python!r} runs a callable, and none is given")
         if self.callable is not None and not _PLACE.fullmatch(self.callable):
             raise ValueError(f"callable = {self.callable!r}; give it as module:function")
         if self.name in SOURCES:
@@ -89,6 +96,10 @@ class GuestFile(Strict):
             steps = [b - a for a, b in pairwise(levels)]
             if not (all(step > 0 for step in steps) or all(step < 0 for step in steps)):
                 raise ValueError(f"refine.{name}: levels go from coarse to fine, each only once")
+        for name in self.supports.lacks:
+            if name not in QUANTITIES:
+                near = ", ".join(get_close_matches(name, QUANTITIES, 3) or list(QUANTITIES)[:8])
+                raise ValueError(f"supports.lacks: {name!r} is no quantity; there are {near}")
         for key in self.known:
             if key.count("/") not in (1, 2):
                 raise ValueError(f'known."{key}": give "case/quantity" or "case/quantity/line"')
@@ -124,9 +135,12 @@ class Guest(GuestFile):
             return "the guest does not support an ellipsoid"
         return None
 
-    def gives(self, quantity: str) -> bool:
-        """Whether the code gives ``quantity``, by its own statement."""
-        return self.supports.stress or QUANTITIES[quantity].kind not in ("stress", "peak")
+    def lack(self, quantity: str) -> str | None:
+        """Why the code does not give ``quantity``, by its own statement; None where it does."""
+        if quantity in self.supports.lacks:
+            return f"the guest lacks {quantity}, by its own statement"
+        stressed = QUANTITIES[quantity].kind in ("stress", "peak")
+        return "the guest does not give stresses" if stressed and not self.supports.stress else None
 
     def known_failure(self, case: str, claim: Claim) -> str | None:
         """The reason of a known failure; None where none is listed."""

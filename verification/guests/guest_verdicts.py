@@ -10,7 +10,7 @@ that is small by chance does not count: |f_n - f_{n-1}| is at least that of the 
 a line the largest of its neighbours.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -19,9 +19,10 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from verification.guests.case_exam import claims_of, profiles_of
-from verification.guests.doors.program_door import Solved
+from verification.guests.doors.program_door import TimedAnswer
 from verification.guests.exam_subjects import REFERENCE, Subject, reference_of
 from verification.guests.guest_description import Guest
+from verification.guests.guest_protocol import GuestAnswer
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.array_types import Array
 from verification.problem.line_profile import Profile
@@ -74,10 +75,7 @@ def observed_order(early: float, late: float, ratios: Sequence[float]) -> float:
     return p
 
 
-Key = tuple[str, str]  # quantity, line
-
-
-def judged(guest: Guest, case: Subject, exam: CaseResult, replies: Sequence[Solved]) -> CaseResult:
+def judged(guest: Guest, case: Subject, exam: CaseResult, replies: Sequence[TimedAnswer]) -> CaseResult:
     """The verdicts on ``replies``, one for each level, with the profiles behind them."""
     levels = [profiles_of(reply.answer, exam, guest) for reply in replies]
     last = replies[-1].answer
@@ -93,10 +91,9 @@ def judged(guest: Guest, case: Subject, exam: CaseResult, replies: Sequence[Solv
     outcomes = {guest.name: mine, reference: exact}
     verdicts = []
     for claim in claims_of(case, guest):
-        reason = last.unsupported or _at_the_edge(guest, claim, exam)
-        verdict = _refused(guest, claim, reason, found if last.values is not None else None)
+        verdict = _unanswered(guest, claim, exam, last, (claim.quantity, claim.line) in found)
         if verdict is None:
-            verdict = decided(guest, claim, decide(claim, profiles, outcomes, case.problem))
+            verdict = decided(guest, decide(claim, profiles, outcomes, case.problem))
         verdicts.append((claim, verdict))
     return CaseResult.of(
         case,
@@ -114,31 +111,40 @@ def refused(guest: Guest, case: Subject, reason: str) -> CaseResult:
     return CaseResult.of(case, sources=(SourceResult(guest.name, 0.0),), verdicts=verdicts)
 
 
-def decided(guest: Guest, claim: Claim, verdict: Verdict) -> Verdict:
-    """``verdict``; of an answer without uncertainty by what the guest claims, as the reason says."""
-    if verdict.difference is None:
+def decided(guest: Guest, verdict: Verdict) -> Verdict:
+    """``verdict`` with what the guest claims: a difference within the claim agrees, whatever its own U is.
+
+    The reason says where U does not cover the difference, or is larger than it may be.
+    """
+    gap, U = verdict.difference, verdict.uncertainty
+    if gap is None or (guest.claim is None and U is not None):
         return verdict
-    if verdict.uncertainty is not None:
-        unseen = verdict.outcome is Outcome.DISAGREES and guest.claim and verdict.difference <= guest.claim
-        if not unseen:
-            return verdict
-        study = (
-            f"the levels of {guest.parameter} do not show it" if guest.levels else "not within what it states"
-        )
-        reason = f"{verdict.reason}; within the claimed {guest.claim:g}, but {study}"
-        return replace(verdict, reason=reason)
     if guest.claim is None:
-        reason = f"difference {verdict.difference:.2e}; the guest states no uncertainty: give refine or claim"
+        reason = f"difference {gap:.2e}; the guest states no uncertainty: give refine or claim"
         return replace(verdict, outcome=Outcome.INCONCLUSIVE, reason=reason)
-    within = verdict.difference <= guest.claim
-    reason = (
-        f"difference {verdict.difference:.2e} {'within' if within else 'exceeds'} the claimed {guest.claim:g}"
-    )
-    return replace(
-        verdict,
-        outcome=Outcome.AGREES if within else Outcome.DISAGREES,
-        reason=f"{reason}; the guest states no uncertainty",
-    )
+    within = gap <= guest.claim
+    if not within and U is not None:
+        return replace(verdict, reason=f"{verdict.reason}; the claim is {guest.claim:g}")
+    reason = f"difference {gap:.2e} {'within' if within else 'exceeds'} the claimed {guest.claim:g}"
+    if U is None:
+        reason += "; the guest states no uncertainty"
+    elif verdict.outcome is not Outcome.AGREES:
+        study = f"the levels of {guest.parameter} do" if guest.levels else "what it states does"
+        reason += f"; {study} not show this accuracy: {verdict.reason}"
+    return replace(verdict, outcome=Outcome.AGREES if within else Outcome.DISAGREES, reason=reason)
+
+
+def _unanswered(
+    guest: Guest, claim: Claim, exam: CaseResult, answer: GuestAnswer, found: bool
+) -> Verdict | None:
+    """UNSUPPORTED or NO_RESULT of a quantity that the guest does not give, or could not; None of others."""
+    missing = answer.unsupported or guest.lack(claim.quantity) or _at_the_edge(guest, claim, exam)
+    if missing is None and answer.error is None and not found:
+        failed = answer.failed.get(claim.line, {}).get(claim.quantity)
+        if failed is not None:
+            return Verdict(Outcome.NO_RESULT, f"{guest.name}: {failed}")
+        missing = answer.missing.get(claim.line, {}).get(claim.quantity, "not answered")
+    return None if missing is None else Verdict(Outcome.UNSUPPORTED, missing)
 
 
 def _at_the_edge(guest: Guest, claim: Claim, exam: CaseResult) -> str | None:
@@ -153,19 +159,8 @@ def _at_the_edge(guest: Guest, claim: Claim, exam: CaseResult) -> str | None:
     return None
 
 
-def _refused(
-    guest: Guest, claim: Claim, reason: str | None, found: Mapping[Key, Profile] | None
-) -> Verdict | None:
-    """UNSUPPORTED where the guest says so, or does not give the quantity; None where it has to be judged."""
-    if reason is None and not guest.gives(claim.quantity):
-        reason = "the guest does not give stresses"
-    elif reason is None and found is not None and (claim.quantity, claim.line) not in found:
-        reason = "not answered"
-    return None if reason is None else Verdict(Outcome.UNSUPPORTED, reason)
-
-
 def _with_uncertainty(
-    guest: Guest, key: Key, profile: Profile, levels: Sequence[Sequence[Profile]]
+    guest: Guest, key: tuple[str, str], profile: Profile, levels: Sequence[Sequence[Profile]]
 ) -> Profile:
     """``profile`` with its stated uncertainty, or that of the refinement study where every level gives it."""
     study = [p for level in levels for p in level if (p.quantity, p.line) == key]
@@ -174,7 +169,7 @@ def _with_uncertainty(
     return replace(profile, uncertainty=estimated(guest.levels, study))
 
 
-def _diagnostics(guest: Guest, replies: Sequence[Solved]) -> dict[str, Any]:
+def _diagnostics(guest: Guest, replies: Sequence[TimedAnswer]) -> dict[str, Any]:
     memory = max((r.memory for r in replies if r.memory), default=None)
     found: dict[str, Any] = {"memory": memory} if memory else {}
     if guest.levels:

@@ -1,7 +1,7 @@
 """JUnit XML: one test case for each comparison, invariant, self-test, so that any CI can read a run."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from verification.judging.verdict import Outcome
@@ -18,17 +18,19 @@ def junit_xml(
     info: RunInfo,
     beside: Regression | None = None,
     tests: Mapping[str, str] | None = None,
+    skipped: Collection[Outcome] = (Outcome.UNSUPPORTED,),
 ) -> str:
     """The verdicts as JUnit XML, with the manifest and the baseline ``beside`` them.
 
     DISAGREES is a failure, NO_RESULT an error. INCONCLUSIVE is a failure too, of its own type: only
     AGREES passes, and a skipped test counts as passed in most readers of this format. UNSUPPORTED, what a
     guest does not give, is skipped.
+    skipped : outcomes that neither pass nor fail; of guests INCONCLUSIVE too, which is no error of theirs.
     tests : what each self-test found wrong, "" where it passed.
     """
     root = Element("testsuites", name="coatcheck", time=f"{info.seconds:.3f}")
     for result in results:
-        _suite(root, result, info)
+        _suite(root, result, info, skipped)
     messages = {f"self-test of the {name}": message for name, message in (tests or {}).items()}
     if beside is not None and beside.update is not None:
         moved = [
@@ -49,7 +51,7 @@ def junit_xml(
     return '<?xml version="1.0" encoding="utf-8"?>\n' + tostring(root, encoding="unicode") + "\n"
 
 
-def _suite(root: Element, result: CaseResult, info: RunInfo) -> None:
+def _suite(root: Element, result: CaseResult, info: RunInfo, skipped: Collection[Outcome]) -> None:
     time, started = f"{result.seconds:.3f}", _text(info.started)
     suite = SubElement(root, "testsuite", name=_text(result.name), time=time, timestamp=started)
     properties = SubElement(suite, "properties")
@@ -64,7 +66,7 @@ def _suite(root: Element, result: CaseResult, info: RunInfo) -> None:
             f"{verdict.reason}\ndifference {_number(verdict.difference)}, uncertainty "
             f"{_number(verdict.uncertainty)}, cap {_number(claim.cap)}, margin {_number(verdict.margin)}"
         )
-        _mark(item, verdict.outcome, verdict.reason, text)
+        _mark(item, verdict.outcome, verdict.reason, text, skipped)
     for one in result.invariants:
         item = made(f"{one.name} of {one.source}")
         text = f"{one.message}\nresidual {_number(one.value)}, bound {_number(one.bound)}"
@@ -83,10 +85,10 @@ def _suite(root: Element, result: CaseResult, info: RunInfo) -> None:
         suite.set(name, str(len(suite.findall(f"testcase{where}"))))
 
 
-def _mark(item: Element, outcome: Outcome, reason: str, text: str) -> None:
+def _mark(item: Element, outcome: Outcome, reason: str, text: str, skipped: Collection[Outcome] = ()) -> None:
     if outcome is Outcome.AGREES:
         return
-    if outcome is Outcome.UNSUPPORTED:
+    if outcome in skipped:
         SubElement(item, "skipped", message=_text(reason))
         return
     tag = "error" if outcome is Outcome.NO_RESULT else "failure"

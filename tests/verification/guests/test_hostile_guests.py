@@ -53,27 +53,47 @@ PROGRAMS = {
     "deeply_nested": ("say('COATCHECK ' + '[' * 100000 + '\\n')", NO, "not JSON"),
     "wrong_id": ("good['id'] = 'another'; answer()", NO, "answers the question 'another'"),
     "no_values": ("del good['values']; answer()", NO, "exactly one of"),
-    "unknown_key": ("good['extra'] = 1; answer()", NO, "extra"),
+    "unknown_key": ("good['extra'] = 1; answer()", AGREE, "within the claimed"),
     "unsupported": ("good.pop('values'); good['unsupported'] = 'not today'; answer()", NONE, "not today"),
     "error": ("good.pop('values'); good['error'] = 'did not converge'; answer()", NO, "did not converge"),
     "nan": ("c['contact_radius'] = float('nan'); answer()", NO, "no finite contact_radius"),
     "text_for_a_number": ("c['contact_radius'] = 'wide'; answer()", NO, "contact_radius"),
-    "too_short": ("f['pressure'].pop(); answer()", NO, "values are needed"),
+    "too_short": ("f['pressure'].pop(); answer()", AGREE, "within the claimed"),
     "empty_values": ("values.clear(); answer()", NONE, "not answered"),
+    "null": ("c['contact_radius'] = None; answer()", NONE, "null"),
+    "a_line_that_is_not_asked": ("values['nowhere'] = {'pressure': [1.0]}; answer()", AGREE, ""),
+    "a_value_that_is_not_asked": ("c['colour'] = 1.0; answer()", AGREE, ""),
+    "a_list_for_a_number": ("c['contact_radius'] = [a, a]; answer()", NO, "one number is needed"),
+    "missing": (
+        "del c['contact_radius']; good['missing'] = {'contact': {'contact_radius': 'soon'}}; answer()",
+        NONE,
+        "soon",
+    ),
+    "failed": (
+        "del c['contact_radius']; good['failed'] = {'contact': {'contact_radius': 'oh'}}; answer()",
+        NO,
+        "oh",
+    ),
+    "in_other_units": ("good['units'] = {'length': 'mm'}; answer()", NO, "units"),
     "uncertainty_of_nothing": (
         "good['uncertainty'] = {'surface': {'sigma_xx': [0.0] * len(x)}}; answer()",
-        NO,
-        "sigma_xx",
+        AGREE,
+        "within the claimed",
     ),
     "boastful_uncertainty": (
         "c['contact_radius'] *= 1.001\n"
         "good['uncertainty'] = {'contact': {'contact_radius': 1e-20}}; answer()",
+        AGREE,
+        "does not show this accuracy",
+    ),
+    "boastful_and_wrong": (
+        "c['contact_radius'] *= 1.1\ngood['uncertainty'] = {'contact': {'contact_radius': 1e-20}}; answer()",
         OFF,
         "exceeds the uncertainty",
     ),
     "vague_uncertainty": (
         "good['uncertainty'] = {'contact': {'contact_radius': 1.0}}; answer()",
-        Outcome.INCONCLUSIVE,
+        AGREE,
         "exceeds the cap",
     ),
     "leaves_a_child_behind": (
@@ -150,14 +170,12 @@ FUNCTIONS = {
     "calls_sys_exit": ("import sys; sys.exit(3)", "ended with code 3"),
     "crashes": ("import ctypes; ctypes.string_at(0)", "crashed with signal 11"),
     "returns_none": ("return None", "none of contact_radius"),
-    "wrong_shape": ("return {'pressure': lambda x, y: [1.0]}", "shape (1,)"),
     "raises_with_a_novel": ("raise ValueError('x' * 10**6)", "ValueError: xxx"),
 }
 
 
-@pytest.mark.parametrize(
-    "name", [pytest.param(n, marks=[pytest.mark.slow] * (n != "wrong_shape")) for n in FUNCTIONS]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_hostile_function_is_one_message(hertz, tmp_path, name):
     case, exam, _ = hertz
     body, words = FUNCTIONS[name]
@@ -179,8 +197,8 @@ def test_answers_out_of_order_are_refused(hertz, tmp_path):
     claims = claims_of(case, host)
     questions = [question_of(case, exam, host, claims, parameter) for parameter in host.questions]
     replies = answered(host, case, questions)
-    assert len(replies) == 1
-    assert replies[0].answer.error
+    assert len(replies) == 3
+    assert all(reply.answer.error for reply in replies)
     (tmp_path / "hostile.py").write_text(HEAD + "good['id'] = q['id'].replace('=1', '=2'); answer()\n")
     replies = answered(host, case, questions)
     assert "question" in replies[0].answer.error

@@ -14,11 +14,11 @@ from verification.cases.case_file import read_case, shipped_cases
 from verification.commands.common.known_folders import RECORDS
 from verification.evidence.fault_record import read_record
 from verification.guests.case_exam import claims_of, prepare, question_of
-from verification.guests.doors.program_door import Solved
+from verification.guests.doors.program_door import TimedAnswer
 from verification.guests.doors.serve_function import called, problem_of, values_of
 from verification.guests.exam_subjects import DISC, PLANE, SPHERE, SQUARE, subject_of
 from verification.guests.guest_description import read_guest
-from verification.guests.guest_protocol import VERSION, Answer, LineOfPoints
+from verification.guests.guest_protocol import VERSION, GuestAnswer, LineOfPoints
 from verification.guests.guest_verdicts import judged
 from verification.judging.verdict import Outcome
 from verification.problem.coated_contact import CoatedContact
@@ -70,11 +70,10 @@ class Examiner:
         try:
             problem = problem_of(question)
             solution = called(ADAPTERS[method].solve, problem, {})
-            values, uncertainty = values_of(solution, problem, question)
-            answer = Answer(**given, values=plain(values), uncertainty=plain(uncertainty))
+            answer = GuestAnswer(**given, **plain(vars(values_of(solution, problem, question))))
         except Exception as error:
-            answer = Answer(**given, error=str(error)[:500])
-        result = judged(guest, case, exam, [Solved(answer, 0.0)])
+            answer = GuestAnswer(**given, error=str(error)[:500])
+        result = judged(guest, case, exam, [TimedAnswer(answer, 0.0)])
         return {(c.quantity, c.line, v.outcome) for c, v in result.verdicts if v.outcome not in PASSED}
 
     def caught(self, fault):
@@ -134,7 +133,8 @@ def test_stresses_of_a_whole_plane_are_interpolated():
         "layer": [0] * 3,
     }
     problem = CoatedContact(1.0, 1.0, (), (1e3, 0.3))
-    values, _ = values_of(result, problem, SimpleNamespace(contact=(), lines=[LineOfPoints(**line)]))
+    asked = SimpleNamespace(contact=(), lines=[LineOfPoints(**line)], edge=None)
+    values = values_of(result, problem, asked).values
     exact = np.array(at) ** 3 + 0.6 * np.array(at[::-1])
     assert values[PLANE] == {"sigma_xz": approx(2 * exact), "sigma_yy": approx(4 * exact)}
 

@@ -6,16 +6,16 @@ from typing import Any
 
 from verification.guests.case_exam import claims_of, exam_path, question_of
 from verification.guests.doors.file_door import read_answer
-from verification.guests.doors.program_door import GRACE, Program, Solved, command_of
+from verification.guests.doors.program_door import GRACE, Program, TimedAnswer, command_of
 from verification.guests.exam_subjects import Subject
 from verification.guests.guest_description import Guest, parse_guest
-from verification.guests.guest_protocol import VERSION, Answer, ProtocolError, Question
+from verification.guests.guest_protocol import VERSION, GuestAnswer, ProtocolError, Question
 from verification.running.case_result import from_json
 from verification.running.checked_files import StoreError, read_checked, write_checked
 from verification.running.json_records import plain
 from verification.running.pool.pool_task import Task
 
-Replies = list[Solved]
+Replies = list[TimedAnswer]
 
 
 def ask(guest_file: Path, guest_text: str, case: Subject, exam: Path, path: Path) -> None:
@@ -39,26 +39,28 @@ _at_work: dict[str, Program] = {}
 def answered(
     guest: Guest, case: Subject, questions: list[Question], at_work: dict[str, Program] | None = None
 ) -> Replies:
-    """The guest's answer to each question; what it does instead becomes an error, and ends the questions.
+    """The guest's answer to each question; what it does instead becomes an error.
 
     at_work : programs by guest file that are left to go on; one started here ends here without.
     """
     replies: Replies = []
     programs = {} if at_work is None else at_work
     key = guest.text
-    try:
-        for question in questions:
+    for question in questions:
+        try:
             if guest.results is not None:
-                replies.append(Solved(read_answer(guest, case, question), 0.0))
+                replies.append(TimedAnswer(read_answer(guest, case, question), 0.0))
             else:
                 if key not in programs:
                     programs[key] = Program(command_of(guest), guest.folder)
                 replies.append(programs[key].ask(question, guest.time_limit))
-    except ProtocolError as error:
-        failed = Answer(protocol=VERSION, id=questions[len(replies)].id, error=str(error)[:2000])
-        replies.append(Solved(failed, 0.0))
-    if key in programs and (at_work is None or replies[-1].answer.error is not None):
-        programs.pop(key).end(GRACE if replies[-1].answer.error is None else 0.0)
+        except ProtocolError as error:
+            failed = GuestAnswer(protocol=VERSION, id=question.id, error=str(error)[:2000])
+            replies.append(TimedAnswer(failed, 0.0))
+            if key in programs:
+                programs.pop(key).end(0.0)
+    if key in programs and at_work is None:
+        programs.pop(key).end(GRACE)
     return replies
 
 
@@ -89,11 +91,11 @@ def _read(data: dict[str, Any]) -> Replies:
     if data.get("schema") != VERSION:
         raise StoreError("not answers of this version")
     return [
-        Solved(Answer.model_validate(reply["answer"]), reply["seconds"], reply["memory"])
+        TimedAnswer(GuestAnswer.model_validate(reply["answer"]), reply["seconds"], reply["memory"])
         for reply in data["replies"]
     ]
 
 
 def _none(case: Subject, reason: str, seconds: float) -> Replies:
-    answer = Answer(protocol=VERSION, id=case.name, error=reason)
-    return [Solved(answer, seconds)]
+    answer = GuestAnswer(protocol=VERSION, id=case.name, error=reason)
+    return [TimedAnswer(answer, seconds)]

@@ -16,7 +16,7 @@ from typing import Any
 
 from verification.guests.exam_subjects import Subject
 from verification.guests.guest_description import Guest
-from verification.guests.guest_protocol import VERSION, Answer, ProtocolError, Question, check
+from verification.guests.guest_protocol import VERSION, GuestAnswer, ProtocolError, Question
 from verification.page.page_parts import written
 from verification.problem.quantity import unit_of
 from verification.running.checked_files import StoreError, read_bounded, write_atomically
@@ -57,7 +57,7 @@ def pack(guest: Guest, case: Subject, question: Question) -> Path:
     return folder
 
 
-def read_answer(guest: Guest, case: Subject, question: Question) -> Answer:
+def read_answer(guest: Guest, case: Subject, question: Question) -> GuestAnswer:
     """The answer that was filled in. Raises ProtocolError naming file, row and column."""
     folder = place_of(guest, case, question)
     cells: Cells = {}
@@ -68,16 +68,24 @@ def read_answer(guest: Guest, case: Subject, question: Question) -> Answer:
     if question.lines:
         cells |= _point_cells(folder / "points.csv", question)
     found: dict[str, dict[str, dict[str, Any]]] = {"value": {}, "uncertainty": {}}
+    failed: dict[str, dict[str, str]] = {}
     for (column, line, name), texts in cells.items():
         if any(text.strip() for _, text in texts):
-            numbers = [_number(text, where) for where, text in texts]
+            try:
+                numbers = [_number(text, where) for where, text in texts]
+            except ProtocolError as error:
+                failed.setdefault(line, {})[name] = str(error)
+                continue
             found[column].setdefault(line, {})[name] = numbers[0] if line == "contact" else numbers
     values, uncertainty = found.values()
-    if not values:
-        return Answer(protocol=VERSION, id=question.id, unsupported=f"nothing is filled in in {folder.name}")
-    answer = Answer(protocol=VERSION, id=question.id, values=values, uncertainty=uncertainty)
-    check(answer, question)
-    return answer
+    if not values and not failed:
+        return GuestAnswer(
+            protocol=VERSION, id=question.id, unsupported=f"nothing is filled in in {folder.name}"
+        )
+    known = {
+        line: {q: v for q, v in by.items() if q in values.get(line, {})} for line, by in uncertainty.items()
+    }
+    return GuestAnswer(protocol=VERSION, id=question.id, values=values, uncertainty=known, failed=failed)
 
 
 def _point_cells(path: Path, question: Question) -> Cells:

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from verification.guests.guest_description import Guest
-from verification.guests.guest_protocol import TOKEN, Answer, ProtocolError, Question, parse_answer
+from verification.guests.guest_protocol import TOKEN, GuestAnswer, ProtocolError, Question, parse_answer
 
 MOST_BYTES = 64_000_000  # of one answer with the chatter before it
 MOST_WORDS = 2000  # of standard error that are kept
@@ -21,10 +21,10 @@ GRACE = 2.0  # s for a program to end after its last answer
 
 
 @dataclass(frozen=True)
-class Solved:
+class TimedAnswer:
     """An ``answer`` with the seconds until it came and the peak memory [bytes] of the program by then."""
 
-    answer: Answer
+    answer: GuestAnswer
     seconds: float
     memory: int | None = None
 
@@ -67,7 +67,7 @@ class Program:
         # A process that the program left behind may hold its standard error open, and the thread up.
         self._drain.join(0.2)
 
-    def ask(self, question: Question, time_limit: float) -> Solved:
+    def ask(self, question: Question, time_limit: float) -> TimedAnswer:
         """The answer to ``question``. Raises ProtocolError with what the program did instead."""
         begin = time.monotonic()
         line = question.model_dump_json().encode() + b"\n"
@@ -78,7 +78,7 @@ class Program:
         self._writing = threading.Thread(target=_write, args=(pipe, line), daemon=True)
         self._writing.start()
         content = self._answer_line(begin + time_limit, time_limit)
-        return Solved(parse_answer(content, question), time.monotonic() - begin, self._memory())
+        return TimedAnswer(parse_answer(content, question), time.monotonic() - begin, self._memory())
 
     def _answer_line(self, until: float, time_limit: float) -> bytes:
         """The next line that begins with the token, without it; what lies before is dropped as it comes."""
@@ -142,6 +142,8 @@ class Program:
 
 def command_of(guest: Guest) -> tuple[str, ...]:
     """The program of ``guest``: its own, or that which calls its Python function."""
+    if guest.callable is not None and guest.python is not None:
+        return (guest.python, str(Path(__file__).with_name("own_python.py")), guest.callable)
     if guest.callable is not None:
         return (sys.executable, "-m", "verification.guests.doors.serve_function", guest.callable)
     return tuple(guest.command or ())

@@ -14,8 +14,9 @@ import inspect
 import os
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from typing import Any
 
@@ -26,20 +27,20 @@ from verification.guests.exam_subjects import PLANE, Load, SquareLoad
 from verification.guests.guest_protocol import (
     TOKEN,
     VERSION,
-    Answer,
-    Disc,
-    Ellipsoid,
+    DiscProblem,
+    EllipsoidProblem,
+    GuestAnswer,
     Layer,
     LineOfPoints,
     Question,
-    Square,
+    SquareProblem,
 )
 from verification.problem import point_answers
 from verification.problem.array_types import Array, Coatings
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad, keywords
 from verification.problem.line_profile import Line, Profile
 from verification.problem.point_answers import FIELDS, FLAT, NotClaimed, Points, Sampled
-from verification.problem.quantity import DISPLACEMENTS, PEAKS, STRESSES
+from verification.problem.quantity import BALL_PEAKS, DISPLACEMENTS, PEAKS, STRESSES
 from verification.running.json_records import plain
 from verification.sampling.largest_tension import Search
 from verification.sampling.line_sampling import sample
@@ -47,8 +48,8 @@ from verification.sampling.line_sampling import sample
 Numbers = dict[str, dict[str, Any]]
 
 
-class NotGiven(ValueError):
-    """A result that holds nothing that was asked for."""
+class AtPoint(ValueError):
+    """An exception of a guest's function, whose message says at which point; its cause is the guest's own."""
 
 
 def _given(result: Any, name: str) -> Any:
@@ -87,54 +88,104 @@ class GuestFields(Sampled):
         of: dict[str, Any] = {} if points.body == FLAT else {"body": points.body}
         if quantity == "stress" and "layer" in inspect.signature(function).parameters:
             of["layer"] = points.layer
-        found = function(x, y) if quantity == "pressure" else function(x, y, z, **of)
-        return _shaped(name, found, (*FIELDS[quantity], *x.shape))
+
+        def called(x: Array, y: Array, z: Array) -> Array | None:
+            found = function(x, y) if quantity == "pressure" else function(x, y, z, **of)
+            return None if found is None else _shaped(name, found, (*FIELDS[quantity], *x.shape))
+
+        try:
+            return called(x, y, z)
+        except NotImplementedError:
+            raise
+        except Exception as error:
+            raise AtPoint(f"{error}{_first_point(called, x, y, z)}") from error
+
+
+def _first_point(called: Callable[..., Any], *points: Array) -> str:
+    """The first of several points, at which a function fails by itself; "" where it fails at none."""
+    for x, y, z in zip(*points, strict=True) if points[0].ndim == 1 and points[0].size > 1 else ():
+        try:
+            called(*(np.array([v]) for v in (x, y, z)))
+        except Exception:
+            return f", first at x, y, z = {x:.4g}, {y:.4g}, {z:.4g}"
+    return ""
+
+
+class AroundExact(GuestFields):
+    """A guest's stress around the exact contact edge, where the largest tension is searched."""
+
+    def __init__(self, result: Any, edge: float) -> None:
+        super().__init__(result)
+        self.edge = edge
+
+    def sample(self, points: Points | None, quantity: str, uncertainty: bool = True) -> point_answers.Answer:
+        """The exact contact radius in place of the guest's own."""
+        return point_answers.Answer(self.edge) if points is None else super().sample(points, quantity, False)
 
 
 def _number(value: Any) -> float | None:
     return None if value is None else float(np.asarray(value, dtype=float).reshape(()))
 
 
-def values_of(result: Any, problem: Load, question: Question) -> tuple[Numbers, Numbers]:
-    """Values and uncertainties that ``result`` gives of those wanted, by line and quantity.
+@dataclass
+class Given:
+    """Values and uncertainties by line and quantity, with the reasons why others are missing or failed."""
 
-    Raises NotGiven where it gives none, ValueError for one of a wrong shape.
-    """
-    guest = GuestFields(result)
+    values: Numbers = field(default_factory=dict)
+    uncertainty: Numbers = field(default_factory=dict)
+    missing: Numbers = field(default_factory=dict)
+    failed: Numbers = field(default_factory=dict)
+
+    def put(self, line: str, quantity: str, value: Any, U: Any) -> None:
+        """One quantity; nothing where it is None."""
+        if value is not None:
+            self.values.setdefault(line, {})[quantity] = value
+            if U is not None:
+                self.uncertainty.setdefault(line, {})[quantity] = U
+
+    @contextmanager
+    def without(self, line: str, quantities: Iterable[str]) -> Iterator[None]:
+        """An exception costs these quantities on this line, and no other."""
+        try:
+            yield
+        except (NotImplementedError, NotClaimed) as error:
+            self.missing.setdefault(line, {}).update(
+                dict.fromkeys(quantities, _message(error) or "not implemented")
+            )
+        except Exception as error:
+            self.failed.setdefault(line, {}).update(dict.fromkeys(quantities, _with_place(error)))
+
+
+def values_of(result: Any, problem: Load, question: Question) -> Given:
+    """What ``result`` gives of what is wanted, by line and quantity."""
+    guest, given = GuestFields(result), Given()
     # A whole solution, as the methods return it, is sampled as they are.
     source: Any = result if guest.gives("sample", "uncertainty") else guest
     whole = source is result or guest.gives("uncertainty", "pressure_uncertainty", "stress_uncertainty")
-    values: Numbers = {"contact": {}}
-    uncertainty: Numbers = {"contact": {}}
     for name in question.contact:
-        value, own = source.sample(None, name)
-        if value is not None:
-            values["contact"][name] = value
-        if own is not None:
-            uncertainty["contact"][name] = own
-    missing = set(question.contact) - set(values["contact"])
-    if (
-        isinstance(problem, CoatedContact)
-        and not whole
-        and missing & set(PEAKS)
-        and guest.gives("stress", "contact_radius")
-    ):
-        search = Search(source, problem)
-        found = search.largest(guest.stress(search.x, 0.0, 0.0, layer=0)[0, 0], None)
-        values["contact"] |= dict(zip(PEAKS, (found.value, found.place), strict=True))
+        with given.without("contact", [name]):
+            given.put("contact", name, *source.sample(None, name))
+    sought = (set(question.contact) - set(given.values.get("contact", {}))) & {*PEAKS, *BALL_PEAKS}
+    if isinstance(problem, CoatedContact) and not whole and sought & set(PEAKS) and guest.gives("stress"):
+        with given.without("contact", sought & set(PEAKS)):
+            around: Any = AroundExact(result, question.edge or float(guest.contact_radius))
+            search = Search(around, problem)
+            found = search.largest(guest.stress(search.x, 0.0, 0.0, layer=0)[0, 0], None)
+            for name, value in zip(PEAKS, (found.value, found.place), strict=True):
+                given.put("contact", name, value, None)
     for asked in question.lines:
-        for p in _sampled(source, result, problem, asked) if whole else _on_line(guest, asked):
-            one = p.line == "contact"
-            if p.quantity in (missing if one else asked.quantities):
-                values.setdefault(p.line, {})[p.quantity] = p.value[0] if one else p.value
-                if p.uncertainty is not None:
-                    wide = p.uncertainty[0] if one else p.uncertainty
-                    uncertainty.setdefault(p.line, {})[p.quantity] = wide
-    values = {line: numbers for line, numbers in values.items() if numbers}
-    if not values:
+        with given.without(asked.line, asked.quantities):
+            for p in _sampled(source, result, problem, asked) if whole else _on_line(guest, asked, given):
+                if p.line == "contact" and p.quantity in sought:
+                    given.put(
+                        p.line, p.quantity, p.value[0], None if p.uncertainty is None else p.uncertainty[0]
+                    )
+                elif p.quantity in asked.quantities:
+                    given.put(p.line, p.quantity, p.value, p.uncertainty)
+    if not given.values and not given.failed and not given.missing:
         names = "contact_radius, approach, peak_pressure, pressure, stress"
-        raise NotGiven(f"its result, {type(result).__name__}, has none of {names}")
-    return values, {line: numbers for line, numbers in uncertainty.items() if numbers}
+        raise NotClaimed(f"its result, {type(result).__name__}, has none of {names}")
+    return given
 
 
 def _sampled(solution: Any, result: Any, problem: Load, asked: LineOfPoints) -> tuple[Profile, ...]:
@@ -175,28 +226,37 @@ def _of_plane(result: Any, asked: LineOfPoints) -> dict[str, Array] | None:
     return {name: RectBivariateSpline(nodes, nodes, sigma[c]).ev(x, y) for name, c in STRESSES.items()}
 
 
-def _on_line(guest: GuestFields, asked: LineOfPoints) -> Iterator[Profile]:
+def _on_line(guest: GuestFields, asked: LineOfPoints, given: Given) -> Iterator[Profile]:
     """Every quantity that the guest gives at points of the flat; nothing of a ball but its planes."""
     x, y, z = (np.array(v) for v in (asked.x, asked.y, asked.z))
-    plane = _of_plane(guest.result, asked) if asked.line == PLANE else None
+    plane = None
+    if asked.line == PLANE:
+        with given.without(asked.line, STRESSES):
+            plane = _of_plane(guest.result, asked)
     found: dict[str, tuple[Array, Array | None]] = {name: (s, None) for name, s in (plane or {}).items()}
 
-    def sampled(field: str, names: Mapping[str, Any], layer: int | None, here: Any = slice(None)) -> None:
-        value, U = guest.sample(Points(x[here], y[here], z[here], layer), field)
-        for name, c in names.items() if value is not None else ():
-            into = found.setdefault(name, (np.empty(x.size), None if U is None else np.empty(x.size)))
-            into[0][here] = value[c]
-            if U is not None and into[1] is not None:
-                into[1][here] = U[c]
+    def fill(name: str, names: Mapping[str, Any], layers: Iterable[int | None]) -> None:
+        if not set(names) & set(asked.quantities):
+            return
+        with given.without(asked.line, set(names) & set(asked.quantities)):
+            parts: dict[str, tuple[Array, Array | None]] = {}
+            for layer in layers:
+                here = np.array(asked.layer) == layer if layer is not None else np.ones(x.shape, dtype=bool)
+                value, U = guest.sample(Points(x[here], y[here], z[here], layer), name)
+                for quantity, c in names.items() if value is not None else ():
+                    into = parts.setdefault(
+                        quantity, (np.empty(x.size), None if U is None else np.empty(x.size))
+                    )
+                    into[0][here] = value[c]
+                    if U is not None and into[1] is not None:
+                        into[1][here] = U[c]
+            found.update(parts)
 
     if asked.body == FLAT:
-        if "pressure" in asked.quantities:
-            sampled("pressure", {"pressure": slice(None)}, None)
-        if plane is None and set(STRESSES) & set(asked.quantities):
-            for layer in sorted(set(asked.layer)):
-                sampled("stress", STRESSES, layer, np.array(asked.layer) == layer)
-        if set(DISPLACEMENTS) & set(asked.quantities):
-            sampled("displacement", {name: i for i, name in enumerate(DISPLACEMENTS)}, None)
+        fill("pressure", {"pressure": slice(None)}, [None])
+        if plane is None:
+            fill("stress", STRESSES, sorted(set(asked.layer)))
+        fill("displacement", {name: i for i, name in enumerate(DISPLACEMENTS)}, [None])
     for quantity, (value, U) in found.items():
         yield Profile(quantity, asked.line, x, value, "guest", U)
 
@@ -209,7 +269,7 @@ def _shaped(name: str, value: Any, shape: tuple[int, ...]) -> Array:
 
 
 def main(place: str) -> None:
-    """Answer every line of standard input."""
+    """GuestAnswer every line of standard input."""
     replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     sys.path.insert(0, os.getcwd())
@@ -219,7 +279,7 @@ def main(place: str) -> None:
         replies.flush()
 
 
-def answer(place: str, question: Question) -> Answer:
+def answer(place: str, question: Question) -> GuestAnswer:
     """The answer of the function at ``place``; an exception becomes an answer too."""
     given: dict[str, Any] = {"protocol": VERSION, "id": question.id}
     try:
@@ -228,27 +288,32 @@ def answer(place: str, question: Question) -> Answer:
         for part in name.split("."):
             function = getattr(function, part)
         problem = problem_of(question)
-        values, uncertainty = values_of(called(function, problem, question.parameter), problem, question)
-        return Answer(**given, values=plain(values), uncertainty=plain(uncertainty))
-    except (NotImplementedError, NotClaimed, NotGiven) as error:
-        return Answer(**given, unsupported=_message(error) or "not implemented")
+        found = values_of(called(function, problem, question.parameter), problem, question)
+        return GuestAnswer(**given, **plain(vars(found)))
+    except (NotImplementedError, NotClaimed) as error:
+        return GuestAnswer(**given, unsupported=_message(error) or "not implemented")
     except Exception as error:
-        frames = traceback.extract_tb(error.__traceback__)
-        # The last line of the guest's own, where there is one.
-        own = [frame for frame in frames if frame.filename.startswith(os.getcwd())] or frames[-1:]
-        where = f" ({os.path.basename(own[-1].filename)}, line {own[-1].lineno})" if own else ""
-        return Answer(**given, error=f"{type(error).__name__}: {_message(error)}{where}")
+        return GuestAnswer(**given, error=_with_place(error))
+
+
+def _with_place(error: Exception) -> str:
+    """The message of ``error`` with the last line of the guest's own code, where there is one."""
+    cause = error.__cause__ if isinstance(error, AtPoint) and error.__cause__ else error
+    frames = traceback.extract_tb(cause.__traceback__)
+    own = [frame for frame in frames if frame.filename.startswith(os.getcwd())] or frames[-1:]
+    where = f" ({os.path.basename(own[-1].filename)}, line {own[-1].lineno})" if own else ""
+    return f"{type(cause).__name__}: {_message(error)}{where}"
 
 
 def problem_of(question: Question) -> Load:
     """The problem of ``question`` in the units of the guest."""
     p = question.problem
     substrate = (p.substrate.E, p.substrate.nu)
-    if isinstance(p, Disc):
+    if isinstance(p, DiscProblem):
         return PrescribedLoad(p.pressure, p.load_radius, _layers(p.coatings), substrate)
-    if isinstance(p, Square):
+    if isinstance(p, SquareProblem):
         return SquareLoad(p.pressure, p.side, _layers(p.coatings), substrate)
-    if isinstance(p, Ellipsoid):
+    if isinstance(p, EllipsoidProblem):
         radii = (p.radius_x, p.radius_y)
         mean = (p.radius_x * p.radius_y) ** 0.5
         return CoatedContact(

@@ -3,7 +3,6 @@
 from collections import Counter
 from collections.abc import Sequence
 from itertools import zip_longest
-from math import log10
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,6 @@ from markupsafe import Markup
 from verification.guests.case_exam import profiles_of
 from verification.guests.exam_subjects import exact_profile, exact_radius, reference_of
 from verification.guests.examination import Examined
-from verification.guests.slip_diagnosis import UNEXPLAINED, slips
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.figures import can_draw
 from verification.page.html_page import render_sections
@@ -28,10 +26,11 @@ from verification.page.page_parts import (
     number,
     outcome_cell,
     row,
+    tally,
     words,
 )
 from verification.page.plots import DASHES, DOTS, MIXED, Curve, Difference, Plot, Trail, draw_curves, panels
-from verification.page.source_labels import OUTCOMES, row_css
+from verification.page.source_labels import row_css
 from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import QUANTITIES
 from verification.running.case_result import CaseResult, RunInfo
@@ -44,7 +43,7 @@ WORST_FIRST = (
     Outcome.AGREES,
     Outcome.UNSUPPORTED,
 )
-MOST_FIGURES, MOST_DIGITS = 12, 15
+MOST_FIGURES = 12
 ROUNDING = 1e-12
 MOST_REASONS = 2
 GUEST, EXACT = Style("semi"), Style("exact", (), 5.0, 0.35)
@@ -124,92 +123,64 @@ def _uncertainty(found: Examined) -> str:
     return f"none; differences are compared with the claimed {guest.claim:g}" if guest.claim else "none"
 
 
-def digits(difference: float | None) -> str:
-    """Correct decimal digits of the largest difference; a dash for None."""
-    if difference is None:
-        return "–"
-    return f"{min(max(-log10(max(difference, 10.0**-MOST_DIGITS)), 0.0), MOST_DIGITS):.1f}"
-
-
 def _quantities(found: Examined) -> Section:
     """A row for each quantity, the worst first, with its likely reason: what to look at."""
-    reasons = _reasons(found)
+    reasons = [
+        (next(iter(by.values())).message, {quantity for cause in by.values() for quantity, _ in cause.places})
+        for by in found.causes.values()
+    ]
     rows: list[tuple[int, float, Row]] = []
     for quantity in dict.fromkeys(claim.quantity for _, claim, _ in found.comparisons):
-        verdicts = [one for one in found.comparisons if one[1].quantity == quantity]
-        count = Counter(v.outcome for _, _, v in verdicts)
-        if set(count) == {Outcome.UNSUPPORTED}:
+        of = [one for one in found.comparisons if one[1].quantity == quantity]
+        if all(v.outcome is Outcome.UNSUPPORTED for _, _, v in of):
             continue
-        worst = next(outcome for outcome in WORST_FIRST if count[outcome])
-        gaps = [(v.difference, r, c) for r, c, v in verdicts if v.difference is not None]
-        gap, where = None, ""
-        if gaps:
-            gap, result, claim = max(gaps, key=lambda item: item[0])
-            where = result.title + ("" if claim.line == "contact" else f", {claim.line}")
-        answered = len(verdicts) - count[Outcome.UNSUPPORTED]
+        gap, where = max((v.difference or 0.0, f"{r.title}, {c.line}") for r, c, v in of)
         why = [message for message, quantities in reasons if quantity in quantities]
-        why = [message for message in why if not message.startswith(UNEXPLAINED)] or why[:1]
-        cells = (
-            Cell(quantity, note=QUANTITIES[quantity].meaning),
-            *([words("; ".join(why[:MOST_REASONS]))] if reasons else []),
-            Cell(digits(gap), gap),
-            outcome_cell(worst),
-            Cell(f"{count[Outcome.AGREES]} of {answered}", count[Outcome.AGREES] / answered),
-            number(gap),
-            words(where),
-        )
-        rows.append((WORST_FIRST.index(worst), -(gap or 0.0), row(*cells, css=row_css(worst))))
+        reason = [words("; ".join(why[:MOST_REASONS]))] if reasons else []
+        cells = (Cell(quantity, note=QUANTITIES[quantity].meaning), *reason, *_counted([v for *_, v in of]))
+        worst = _worst([v for *_, v in of])
+        rows.append((WORST_FIRST.index(worst), -gap, row(*cells, words(where), css=row_css(worst))))
     rows.sort(key=lambda item: item[:2])
-    heads = ["quantity", *(["likely reason"] if reasons else [])]
-    heads += ["digits", "worst", "agree", "largest difference", "where"]
-    table = Table(
-        "The largest difference over all cases and lines with the digits that it leaves; relative to the "
-        "value (p0, a, approach), else to the smaller of p_h and p0.",
-        heads,
-        [line for _, _, line in rows],
+    heads = ["quantity", *(["likely reason"] if reasons else []), *COUNTED, "where"]
+    caption = (
+        "The largest difference over all cases and lines; relative to the value (p0, a, approach), else to "
+        "the smaller of p_h and p0."
     )
+    table = Table(caption, heads, [line for _, _, line in rows])
     return Section("quantities", "Which quantity is wrong?", [Part("", [table])])
 
 
-def _reasons(found: Examined) -> list[tuple[str, list[str]]]:
-    """Each likely slip with the quantity of every place; unexplained differences last."""
-    by: dict[str, list[str]] = {}
-    for result in found.results:
-        for slip in slips(result, found.guest.name):
-            by.setdefault(slip.message, []).extend(quantity for quantity, _ in slip.places)
-    return sorted(by.items(), key=lambda item: (item[0].startswith(UNEXPLAINED), -len(item[1])))
+COUNTED = ("worst", "agree", "largest difference")
+
+
+def _worst(verdicts: Sequence[Verdict]) -> Outcome:
+    return min((v.outcome for v in verdicts), key=WORST_FIRST.index)
+
+
+def _counted(verdicts: Sequence[Verdict]) -> list[Cell]:
+    """Cells of ``COUNTED`` about the comparisons that the guest supports."""
+    answered = [v for v in verdicts if v.outcome is not Outcome.UNSUPPORTED]
+    agree = sum(v.outcome is Outcome.AGREES for v in answered)
+    gap = max((v.difference for v in answered if v.difference is not None), default=None)
+    return [outcome_cell(_worst(answered)), tally(agree, len(answered)), number(gap)]
 
 
 def _cases(found: Examined) -> Section:
-    """A row for each case with an answer: digits by quantity, time, memory."""
-    names = dict.fromkeys(c.quantity for _, c, v in found.comparisons if v.difference is not None)
+    """A row for each case with an answer: worst verdict, largest difference, time, memory."""
     rows: list[Row] = []
     for result in found.results:
-        if all(v.outcome is Outcome.UNSUPPORTED for _, v in result.verdicts):
+        verdicts = [v for _, v in result.verdicts]
+        if all(v.outcome is Outcome.UNSUPPORTED for v in verdicts):
             continue
         mine = [s for s in result.sources if s.source == found.guest.name and s.seconds]
-        cells = [_digits_cell([v for c, v in result.verdicts if c.quantity == name]) for name in names]
         memory = mine[0].diagnostics.get("memory") if mine else None
         taken = number(mine[0].seconds if mine else None, seconds)
-        rows.append(row(result.title, *cells, taken, number(memory and memory / 1e6, "{:.0f} MB".format)))
-    table = Table(
-        "Digits that agree with the exact reference, by case, with the worst verdict; time and peak memory "
-        "at the finest level.",
-        ["case", *names, "time", "memory"],
-        rows,
-    )
+        shown = number(memory and memory / 1e6, "{:.0f} MB".format)
+        rows.append(row(result.title, *_counted(verdicts), taken, shown))
+    caption = "Comparisons with the exact reference by case; time and peak memory at the finest level."
+    table = Table(caption, ["case", *COUNTED, "time", "memory"], rows)
     lead = f"{len(rows)} of {len(found.results)} cases; the others are not supported."
     return Section("cases", "Cases", [Part(lead if len(rows) < len(found.results) else "", [table])])
-
-
-def _digits_cell(verdicts: Sequence[Verdict]) -> Cell:
-    outcomes = {v.outcome for v in verdicts}
-    worst = next((outcome for outcome in WORST_FIRST if outcome in outcomes), None)
-    if worst is None or worst is Outcome.UNSUPPORTED:
-        return Cell("–")
-    gap = max((v.difference for v in verdicts if v.difference is not None), default=None)
-    style = OUTCOMES[worst]
-    return Cell(f"{style.mark} {digits(gap)}", gap, f"verdict {style.css}", style.word)
 
 
 def _failures(found: Examined) -> Section | None:
@@ -231,7 +202,7 @@ def _failures(found: Examined) -> Section | None:
         legend = [(Markup('<span class="s-semi">—</span>'), "guest"), (Markup("<span>━</span>"), "exact")]
         caption = (
             "Above the values of guest and exact reference over the scale, below their difference with its "
-            "uncertainty on a logarithmic scale; a ring marks the point that decides, a dashed line the cap."
+            "uncertainty on a logarithmic scale; a ring marks the deciding point, a dashed line the claim."
         )
         text = "Values along the line: of each quantity the largest difference, then the others."
         parts.append(Part(text, gallery=Gallery(legend, figures, caption)))
@@ -250,7 +221,7 @@ def _failures(found: Examined) -> Section | None:
         )
         for result, claim, verdict in bad
     ]
-    heads = ["case", "verdict", "quantity", "line", "guest / exact", "difference", "U", "cap", "reason"]
+    heads = ["case", "verdict", "quantity", "line", "guest / exact", "difference", "U", "claim", "reason"]
     parts.append(Part("", [Table("Every comparison that does not agree.", heads, rows)]))
     return Section("failures", "What does not agree", parts, failures)
 

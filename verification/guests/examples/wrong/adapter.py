@@ -8,9 +8,8 @@ from verification.sources.references.hertz import Hertz
 def solve(radius, load, substrate, friction):
     """Hamilton's sliding contact, with the slips of an afternoon."""
     E, nu = substrate
-    right = Hertz(radius, load, E, nu, friction)
     # 1. E in place of E* = E/(1 - nu^2) makes the contact too large.
-    a = (3 * load * radius / (4 * E)) ** (1 / 3)
+    right = Hertz(radius, load, E * (1 - nu**2), nu, friction)
 
     def pressure(x, y):
         return 1e-6 * right.pressure(x, y)  # 2. in MPa
@@ -20,9 +19,9 @@ def solve(radius, load, substrate, friction):
         return sigma[np.ix_([1, 0, 2], [1, 0, 2])]  # 4. y for x
 
     return {
-        "contact_radius": a,
-        "approach": a**2 / radius,
-        "peak_pressure": 3 * load / (2 * np.pi * a**2),
+        "contact_radius": right.contact_radius,
+        "approach": right.approach,
+        "peak_pressure": 1e-6 * right.peak_pressure,
         "pressure": pressure,
         "stress": stress,
     }

@@ -1,0 +1,110 @@
+"""A guest with one broken field of each kind: it costs that quantity, and every other one is judged."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+from guest_exams import GUEST, prepared, question
+
+from verification.guests.doors.program_door import TimedAnswer
+from verification.guests.doors.serve_function import values_of
+from verification.guests.guest_protocol import VERSION, GuestAnswer
+from verification.guests.guest_verdicts import judged
+from verification.judging.verdict import Outcome
+from verification.problem.quantity import DISPLACEMENTS, PEAKS, STRESSES
+from verification.running.json_records import plain
+from verification.sources.exact_sources import solve_exactly
+
+NO, NONE, OFF = Outcome.NO_RESULT, Outcome.UNSUPPORTED, Outcome.DISAGREES
+
+
+def raising(error):
+    def function(*points, **of):
+        raise error
+
+    return function
+
+
+def beyond(exact, x, *points, **of):
+    """A field of a mesh that ends at 80 um."""
+    if np.max(np.abs(x)) > 8e-5:
+        raise IndexError("outside the mesh")
+    return exact(x, *points, **of)
+
+
+def without(exact, component, *points, **of):
+    sigma = exact(*points, **of)
+    sigma[component] = np.nan
+    return sigma
+
+
+# Field, what it becomes, quantities that it costs, their outcome, words of the reason.
+BROKEN = {
+    "displacement raises": (
+        "displacement",
+        lambda u: raising(RuntimeError("no mesh")),
+        DISPLACEMENTS,
+        NO,
+        "no mesh",
+    ),
+    "displacement is not there yet": (
+        "displacement",
+        lambda u: raising(NotImplementedError()),
+        DISPLACEMENTS,
+        NONE,
+        "",
+    ),
+    "displacement is None": ("displacement", lambda u: lambda *p: None, DISPLACEMENTS, NONE, "not answered"),
+    "pressure of another shape": ("pressure", lambda p: lambda x, y: [1.0], ("pressure",), NO, "shape (1,)"),
+    "pressure of text": ("pressure", lambda p: lambda x, y: "none", ("pressure",), NO, "could not convert"),
+    "stress raises somewhere": (
+        "stress",
+        lambda s: partial(beyond, s),
+        (*STRESSES, *PEAKS),
+        NO,
+        "x, y, z = ",
+    ),
+    "stress lacks a component": (
+        "stress",
+        lambda s: partial(without, s, (0, 1)),
+        ("sigma_xy",),
+        NO,
+        "no finite",
+    ),
+    "approach is None": ("approach", lambda v: None, ("approach",), NONE, "not answered"),
+    "approach is NaN": ("approach", lambda v: np.nan, ("approach",), NO, "no finite"),
+    "peak pressure is text": ("peak_pressure", lambda v: "high", ("peak_pressure",), NO, "high"),
+    "radius is zero": ("contact_radius", lambda v: 0.0, ("contact_radius",), OFF, "exceeds"),
+    "radius in mm": ("contact_radius", lambda v: 1e3 * v, ("contact_radius",), OFF, "exceeds"),
+}
+
+
+@pytest.fixture(scope="module")
+def exact(tmp_path_factory):
+    case, exam = prepared("01_uncoated_steel", tmp_path_factory.mktemp("exam"))
+    solution = solve_exactly(case.problem)
+    names = ("contact_radius", "approach", "peak_pressure", "pressure", "stress", "displacement")
+    return case, exam, {name: getattr(solution, name) for name in names}
+
+
+def verdicts(case, exam, result):
+    asked = question(case, exam)
+    given = plain(vars(values_of(result, case.problem, asked)))
+    answer = GuestAnswer(protocol=VERSION, id=asked.id, **given)
+    found = judged(GUEST, case, exam, [TimedAnswer(answer, 0.0)]).verdicts
+    return {(claim.quantity, claim.line): verdict for claim, verdict in found}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_broken_field_costs_its_own_quantities_alone(exact, name):
+    case, exam, right = exact
+    field, change, quantities, outcome, words = BROKEN[name]
+    whole = verdicts(case, exam, right)
+    found = verdicts(case, exam, right | {field: change(right[field])})
+    broken = {key for key in found if found[key].outcome is not whole[key].outcome}
+    assert broken
+    assert {q for q, _ in broken} <= set(quantities)
+    assert {found[key].outcome for key in broken} == {outcome}
+    assert all(words in found[key].reason for key in broken)
+    agreeing = {q for (q, _), verdict in whole.items() if verdict.outcome is Outcome.AGREES}
+    assert {q for q, _ in broken} == agreeing & set(quantities)
