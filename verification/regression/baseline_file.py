@@ -40,14 +40,14 @@ class _Case:
 
 
 @dataclass(frozen=True, eq=False)
-class _Stored:
+class _BaselineFile:
     cases: dict[str, _Case]
     history: tuple[Update, ...]
     self_tests: dict[str, int] = field(default_factory=dict)
 
 
 _FILE = RecordFile(
-    _Stored, "baseline.json.xz", ("coatcheck-baseline/2",), "the baseline", "restore it or update it"
+    _BaselineFile, "baseline.json.xz", ("coatcheck-baseline/2",), "the baseline", "restore it or update it"
 )
 
 
@@ -70,7 +70,7 @@ def write_baseline(folder: Path, baseline: Baseline) -> Path:
         )
         for name, found in baseline.cases.items()
     }
-    return _FILE.write(folder, _Stored(cases, baseline.history, dict(baseline.self_tests)))
+    return _FILE.write(folder, _BaselineFile(cases, baseline.history, dict(baseline.self_tests)))
 
 
 def read_baseline(folder: Path) -> Baseline | None:
