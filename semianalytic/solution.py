@@ -321,12 +321,11 @@ class Solution:
                 other = self._other_than("patch size", "iteration")
                 scale = other + DEEP[0] * deep * self._stated.contact_radius / self.contact_radius
                 total = total + least * shallow + np.abs(sigma).max(axis=(0, 1)) * scale
-                total = np.maximum(total, self._misfit(x, y, z))
-                if not (moves := at_edge(points)).all():
-                    moved = self._uncertain_edge(solid, x, y, z, layer)
-                    total = np.where(moves, total, np.maximum(total, moved))
-                total = total * (1 - MEAN * deep)
+                total = np.maximum(total, self._misfit(x, y, z)) * (1 - MEAN * deep)
             total = total + RINGS * self.peak_pressure
+            if self._level.shape is not None and not (moves := at_edge(points)).all():
+                moved = self._uncertain_edge(solid, x, y, z, layer)
+                return PatchAnswer(sigma, np.where(moves, share * total, np.maximum(share * total, moved)))
         else:
             total += floor * self.peak_pressure + self._rim(x, y, z)
             deep = np.asarray(z) >= 4 * self.diagnostics.patch_size
@@ -407,14 +406,15 @@ class Solution:
     def _uncertain_edge(
         self, solid: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
     ) -> Array:
-        """Change of the stress [Pa] by the uncertain radius, within ``NEAR`` patches of the edge."""
+        """Change of the stress [Pa] by the uncertain radius, within ``NEAR`` patches of the edge; (3, 3) +
+        points."""
         shift = self._uncertain_reach
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         distance = np.hypot(self._to_edge(x, y), z)
         near = distance < NEAR * self.diagnostics.patch_size + shift
-        change = np.zeros(x.shape)
+        change = np.zeros((3, 3, *x.shape))
         if near.any():
-            change[near] = fields.stress_of_uncertain_edge(
+            change[..., near] = fields.stress_of_uncertain_edge(
                 self._level, solid, shift, x[near], y[near], z[near], layer
             )
         return change

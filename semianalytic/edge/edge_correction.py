@@ -34,7 +34,9 @@ NARROW = 5  # patches between centre and edge, below which the edge is not resol
 FEW_PATCHES = 32  # between centre and edge, of a grid whose rejection of a shape the next one tries again
 # polynomials: of an uncoated body; of a layer, the second number for each of asinh(1/e)
 FEW, LAYERED = 3, (6.0, 4.6)
-USUAL = 115  # patches in a of the default grid; beyond, a grid 1.4 times as fine has one polynomial more
+# patches in a of the coarsest of three default grids; one 1.4 times as fine has one polynomial more, so that
+# the change on refining holds what the polynomials leave out
+USUAL = 57
 LAYER = 7.0  # e over h/a: 4 is best for one coating, 8 for a stack, whose images lie farther away too
 RESOLVED = 1.75  # polynomials for each sqrt(patches in a times e asinh(1/e)); under stacks 2 did not converge
 MIRRORED = 1e-12  # of the depth of the indenter, by which a gap that is even in y may miss it

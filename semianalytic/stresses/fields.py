@@ -63,12 +63,12 @@ def _add(
 def stress_of_uncertain_edge(
     level: Level, body: Body, shift: float, x: Array, y: Array, z: Array, layer: int | None
 ) -> Array:
-    """Largest change of a stress [Pa] when a smooth edge widens or narrows by ``shift`` [m], (n,)."""
+    """Change of each stress [Pa] when a smooth edge widens or narrows by ``shift`` [m], (3, 3, n)."""
     points = _points(body, x, y, z, layer)
     assert level.shape is not None
     moved = [rings_of(level.shape.widened(s)) for s in (0.0, -shift, shift)]
     here, *others = subsurface.stress(*points, pressures=moved, body=body)
-    return np.max([np.abs(other - here).max(axis=0) for other in others], axis=0)
+    return patch_field.tensor(np.max([np.abs(other - here) for other in others], axis=0))
 
 
 def stress_plane(level: Level, body: Body, z: float, layer: int | None) -> Array:

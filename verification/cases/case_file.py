@@ -36,7 +36,7 @@ from verification.cases.unit_numbers import InSI, Metres, Newtons
 from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.coated_contact import CoatedContact
-from verification.problem.display_units import Units
+from verification.problem.display_units import Units, prefixed
 from verification.problem.indenter_shape import Indenter
 from verification.problem.line_profile import line_of
 from verification.problem.point_answers import BALL, FLAT
@@ -151,8 +151,8 @@ class _CaseProblem(Sized):
         if self.approach is not None and self.indenter is not None:
             raise ValueError("approach states the contact of a ball alone; give the load of this indenter")
         if self.approach is not None and self.approach > self.size:
-            ball = f"the radius of the ball, {self.size:g} m"
-            raise ValueError(f"approach = {self.approach:g} m is beyond {ball}; check its unit")
+            ball = f"the radius of the ball, {prefixed(self.size, 'm')}"
+            raise ValueError(f"approach = {prefixed(self.approach, 'm')} is beyond {ball}; check its unit")
         coatings = [*self.coatings, *(self.ball.coatings if self.ball else ())]
         if self.temperature_change is not None and all(c.expansion is None for c in coatings):
             raise ValueError(

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from verification.cases.toml_file import spoken
 from verification.cases.unit_numbers import InSI
 from verification.problem.coated_contact import CoatedContact
-from verification.problem.display_units import prefixed
+from verification.problem.display_units import Units, prefixed
 from verification.problem.point_answers import BALL
 from verification.sources.load_of_approach import own_radius
 
@@ -94,7 +94,8 @@ def residual_warnings(
                 slip = "; check its unit"
                 if not isinstance(value, InSI) and abs(value) < 1e5:
                     slip = f"; {key} = {value:g} looks like {'GPa' if abs(value) < 50 else 'MPa'}"
-                found.append(f"{key} = {value:g} Pa is not between 1 MPa and 20 GPa{slip}")
+                shown = f"{'-' if value < 0 else ''}{prefixed(abs(value), 'Pa')}"
+                found.append(f"{key} = {shown} is not between 1 MPa and 20 GPa{slip}")
     return tuple(found)
 
 
@@ -109,7 +110,7 @@ def likely_slips(problem: CoatedContact) -> str:
 def _numbers(problem: CoatedContact) -> Iterator[str]:
     """Lines for the numbers of the materials by themselves."""
     if problem.radius > LARGEST_RADIUS:
-        yield f"radius = {problem.radius:g} m is above {LARGEST_RADIUS:g} m" + _slip(
+        yield f"radius = {prefixed(problem.radius, 'm')} is above {LARGEST_RADIUS:g} m" + _slip(
             "radius", problem.radius, _LENGTH_UNITS, (1e-5, LARGEST_RADIUS), prefer="mm"
         )
     for body in problem.bodies:
@@ -121,18 +122,20 @@ def _numbers(problem: CoatedContact) -> Iterator[str]:
             key = spoken(key)
             if not low <= E <= MODULI[1]:
                 which = f"below {prefixed(low, 'Pa')}" if low > E else "above 2 TPa"
-                yield f"{key} = {E:g} Pa is {which}" + _slip(key, E, _MODULUS_UNITS, USUAL_MODULI)
+                yield f"{key} = {prefixed(E, 'Pa')} is {which}" + _slip(key, E, _MODULUS_UNITS, USUAL_MODULI)
         for i, (_, _, h) in enumerate(seen.coatings):
             key = spoken(f"{of}coatings.{i}.thickness")
             slip = _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
             if h > max(problem.radius, COATING):
-                yield f"{key} = {h:g} m is beyond the radius of the ball, {problem.radius:g} m" + slip
+                sizes = prefixed(h, "m"), prefixed(problem.radius, "m")
+                yield "{} = {} is beyond the radius of the ball, {}".format(key, *sizes) + slip
 
 
 def _thick(problem: CoatedContact) -> Iterator[str]:
     """Lines for coatings below which nothing takes part in the contact."""
     # before it is refused a contact may be of any size, and of none
     a = own_radius(problem) if 0 < problem.a_h < float("inf") else sys.float_info.min
+    units = Units.of_contact(problem, a)
     for body in problem.bodies:
         for i, (_, _, h) in enumerate(problem.seen_from(body).coatings):
             key = spoken(f"{before(body)}coatings.{i}.thickness")
@@ -140,8 +143,9 @@ def _thick(problem: CoatedContact) -> Iterator[str]:
                 continue
             reason = f"is {h / a:.3g} contact radii; what lies below has no part"
             if h <= THICKEST * a:
-                reason = f"is above {COATING:g} m, thick for a coating"
-            yield f"{key} = {h:g} m {reason}" + _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
+                reason = f"is above {prefixed(COATING, 'm')}, thick for a coating"
+            slip = _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
+            yield f"{key} = {units.shown_length(h)} {reason}" + slip
 
 
 def _order(problem: CoatedContact) -> Iterator[str]:

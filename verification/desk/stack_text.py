@@ -92,15 +92,21 @@ def body_label(problem: CoatedContact, body: str, where: str) -> str:
 
 
 def outside_verified(case: Case) -> str:
-    """What lies outside the ranges of the random problems of both methods; "" for nothing."""
+    """What lies outside the ranges of the random problems of both methods; "" for nothing.
+
+    Their thicknesses are over a_h of the bare bodies; on a film of another modulus the contact's own radius a
+    counts too.
+    """
     problem, found = case.problem, []
+    a = own_radius(problem)
     for body in problem.bodies:
         seen, of = problem.seen_from(body), "" if body == FLAT else f" on the {body}"
         thickness, ratio = (FILMS, FILM_RATIO) if _films(problem) else (THICKNESS, RATIO)
         for i, layers in enumerate(_coatings(seen, case.layers.get(body)), start=1):
-            h = sum(h for *_, h in layers) / problem.a_h
-            if not thickness[0] * (1 - 1e-3) <= h <= thickness[1] * (1 + 1e-3):
-                found.append(f"coating {i}{of}, h = {h:.2g} a_h, outside {_between(thickness)}")
+            h = sum(h for *_, h in layers)
+            low, high = thickness[0] * (1 - 1e-3), thickness[1] * (1 + 1e-3)
+            if not any(low <= h / radius <= high for radius in (a, problem.a_h)):
+                found.append(f"coating {i}{of}, h = {h / a:.2g} a, outside {_between(thickness)}")
             ratios = [E / seen.substrate[0] for E, _, _ in layers]
             if not ratio[0] <= min(ratios) <= max(ratios) <= ratio[1]:
                 found.append(

@@ -188,6 +188,13 @@ class _SweptProblem(Sized):
     ball: BallEntry | None = None
     temperature_change: solid_schema.TemperatureChange | None = None
 
+    @model_validator(mode="before")
+    @classmethod
+    def _by_load(cls, given: Any) -> Any:
+        if isinstance(given, dict) and "approach" in given:
+            raise ValueError("approach differs along a study, whose points share their load: give the load")
+        return given
+
     @model_validator(mode="after")
     def _one_swept(self) -> "_SweptProblem":
         if (self.coating is None) == (not self.coatings):

@@ -251,6 +251,7 @@ STACK = STUDY.replace("coating = {", "coatings = [{ nu = 0.2, E = 2e11, thicknes
     ("file", "old", "new", "refused"),
     [
         (STUDY, "title =", 'source = "me"\ntitle =', ""),
+        (STUDY, "load =", "approach = 1e-6 #", "problem approach differs"),
         (STUDY, "nu = 0.3 }", 'nu = 0.3, name = "HSS" }', ""),
         (STUDY, "nu = 0.3 }", 'nu = 0.3, hardness = "9 GPa" }', ""),
         (STUDY, "nu = 0.3 }", 'nu = 0.3, yield_strength = "3 GPa" }', ""),

@@ -85,7 +85,7 @@ TWICE = [
     (case_text(more="approach = 1e-6"), ("load = 20", "approach = 1e-06")),
     (case_text().replace("load = 20\n", ""), ("load", "approach")),
     (case_text(tables="[semianalytic]\napproach = 1e-6\n"), ("semianalytic", "approach", "[problem]")),
-    (case_text().replace("load = 20", 'approach = "20 mm"'), ("approach = 0.02", "radius")),
+    (case_text().replace("load = 20", 'approach = "20 mm"'), ("approach = 20 mm", "radius")),
     (case_text(more="temperature_change = -300"), ("temperature_change", "expansion")),
 ]
 

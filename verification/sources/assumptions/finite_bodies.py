@@ -18,6 +18,7 @@ import numpy as np
 
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, keywords
+from verification.problem.display_units import prefixed
 from verification.problem.gauss_legendre import wavenumber_panels
 from verification.sources.assumptions.contact_change import (
     RESOLUTION,
@@ -241,7 +242,8 @@ def on_disc(problem: CoatedContact, thickness: float) -> CoatedContact:
     """
     coated = sum(h for _, _, h in problem.coatings)
     if coated >= thickness:
-        raise ValueError(f"coatings of {coated:g} m on a disc of {thickness:g} m; make the disc thicker")
+        sizes = prefixed(coated, "m"), prefixed(thickness, "m")
+        raise ValueError("coatings of {} on a disc of {}; make the disc thicker".format(*sizes))
     E, nu = problem.substrate
     layers = (*problem.coatings, (E, nu, thickness - coated))
     return replace(problem, coatings=layers, substrate=(RIGID * E, nu))
