@@ -431,6 +431,8 @@ def test_flat_punch_has_the_stiffness_of_its_radius():
 def test_contact_at_the_rim_of_the_square_is_refused():
     with pytest.raises(semianalytic.NotConverged, match="widen"):
         indent(lambda x, y: (x**2 + y**2) / (2 * R), 0.8 * A_H)
+    with pytest.raises(semianalytic.NotConverged, match="upside down"):
+        indent(lambda x, y: -(x**2 + y**2) / (2 * R), 2 * A_H)
 
 
 # Refusals

@@ -41,7 +41,7 @@ def _plane_files(case: Case, solution: Any) -> dict[str, bytes]:
     """Files of the plane y = 0: the region of interest, the far field."""
     files: dict[str, bytes] = {}
     a, interfaces = solution.contact_radius, case.problem.interfaces
-    edge = float(getattr(solution, "extent_x", a))
+    edges = _edges(solution)[:, None]
     for which, (reach, rounds) in PLANES.items():
         depths = [0.0, *(z for z in interfaces if z < reach * a), reach * a]
         beside = STEPS[reach >= STEPS] * a
@@ -53,8 +53,7 @@ def _plane_files(case: Case, solution: Any) -> dict[str, bytes]:
                 return np.array([sigma[component] for component in STRESSES.values()])
 
             near = beside if layer == 0 else beside[beside > 0.1 * min(top, a)]  # no edge is in sight below
-            x = np.concatenate([edge - near, edge + near, [0.0, reach * a]])
-            x = np.unique(np.concatenate([-x, x]))
+            x = np.unique([*(edges - near).flat, *(edges + near).flat, -reach * a, 0.0, reach * a])
             z = np.unique(np.concatenate([[top, (top + bottom) / 2, bottom], top + near]))
             x, z = x[np.abs(x) <= reach * a], z[z <= bottom]
             x, z = _refined(stress, x, z, a, BETWEEN * solution.peak_pressure, rounds)
@@ -68,6 +67,20 @@ def _plane_files(case: Case, solution: Any) -> dict[str, bytes]:
             layers.append(_box(x, slab, z, sigma, u, layer, a))
         files |= _files(layers, case, f"fem{which}", "finite elements", a)
     return files
+
+
+def _edges(solution: Any) -> Array:
+    """x [m] on y = 0 where the pressure begins or ends, of one contact or of several side by side."""
+    a = solution.contact_radius
+    x = np.linspace(-20 * a, 20 * a, 4001)
+    loaded = solution.pressure(x, 0.0) > 0
+    at = np.flatnonzero(loaded[1:] != loaded[:-1])
+    low, high, first = x[at], x[at + 1], loaded[at]
+    for _ in range(40):
+        middle = (low + high) / 2
+        before = (solution.pressure(middle, 0.0) > 0) == first
+        low, high = np.where(before, middle, low), np.where(before, high, middle)
+    return np.asarray((low + high) / 2)
 
 
 def _refined(

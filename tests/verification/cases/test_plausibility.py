@@ -6,6 +6,7 @@ import pytest
 from case_texts import case_text
 
 from verification.cases.case_file import parse_case, read_case, shipped_cases
+from verification.cases.plausibility import warnings_of
 from verification.cases.toml_file import CaseError
 from verification.problem.coated_contact import CoatedContact
 from verification.study.study_plan import parse_study, read_study_file, shipped_studies
@@ -80,3 +81,8 @@ def test_nothing_is_told_of_the_shipped_files():
         assert read_case(path).warnings == (), path
     for path in shipped_studies().values():
         assert read_study_file(path).warnings == (), path
+
+
+def test_lengths_are_in_the_units_of_the_contact():
+    (line,) = warnings_of(CoatedContact(5e-6, 1e-9, ((1e9, 0.4, 2e-6),), (7e9, 0.22)))
+    assert "thickness = 2000 nm is 136 contact radii" in line

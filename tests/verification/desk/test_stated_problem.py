@@ -14,7 +14,7 @@ import semianalytic
 from verification.cases.case_file import parse_case, read_case, shipped_cases
 from verification.cases.toml_file import CaseError
 from verification.desk.contact_answer import answer
-from verification.desk.stack_text import described
+from verification.desk.stack_text import described, outside_verified
 from verification.problem.coated_contact import CoatedContact
 from verification.running.contact_run import keywords_of
 from verification.sources.exact_sources import solve_exactly
@@ -105,6 +105,14 @@ def test_the_shape_of_an_indenter_is_stated_once():
         CoatedContact(radius=0.01, **steel)
     with pytest.raises(ValueError, match=r"gap = 'sphere'.*ellipsoid"):
         semianalytic.solve(radius=0.02, gap="sphere", **steel)
+
+
+def test_a_film_is_thick_in_the_radius_of_its_own_contact():
+    gel = case_text("E = 10e3; nu = 0.49; thickness = 10e-6", radius="5e-6", load="1e-9", E="70e9")
+    said = outside_verified(parsed(gel))
+    assert "coating 1, h = 15 a, outside" in said
+    assert "a_h" not in said
+    assert "h =" not in outside_verified(parsed(gel.replace("10e-6", "3e-6")))
 
 
 # The contact that was shown under 1000 N, an AFM tip, a small tip, a gel under a bead.

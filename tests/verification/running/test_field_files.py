@@ -11,6 +11,7 @@ from verification.problem.quantity import STRESSES
 from verification.running.checked_files import StoreError
 from verification.running.stored_fields import confirm_fields, write_fields
 from verification.sampling import vtk_files
+from verification.sources.references.hamilton import Hamilton
 
 pv = pytest.importorskip("pyvista")
 
@@ -51,17 +52,55 @@ def grid(request, folder):
     return pv.read(folder / f"one-{request.param}")
 
 
-@pytest.mark.parametrize(("nu", "friction"), [(0.3, 0.0), (0.25, 0.3)])
-def test_a_line_sampled_as_pyvista_does_by_default_has_the_stresses_of_the_solution(tmp_path, nu, friction):
-    text = case_text(f"E = 420e9; nu = {nu}; thickness = 70e-6", more=f"friction = {friction}")
-    case = parse_case(text.encode(), tmp_path / "one.toml")
+class SideBySide:
+    """Two equal sliding contacts at x = +-``apart`` [m], whose fields add: four edges on y = 0."""
+
+    def __init__(self, one, apart):
+        self.one, self.ends = one, (-apart, apart)
+        self.contact_radius, self.approach = 2**0.5 * one.contact_radius, one.approach
+        self.peak_pressure = one.peak_pressure
+
+    def pressure(self, x, y=0.0):
+        return sum(self.one.pressure(x + end, y) for end in self.ends)
+
+    def stress(self, x, y, z, layer=None):
+        return sum(self.one.stress(x + end, y, z) for end in self.ends)
+
+    def displacement(self, x, y, z):
+        return sum(self.one.displacement(x + end, y, z) for end in self.ends)
+
+
+def solved(case):
     problem = {k: getattr(case.problem, k) for k in ("radius", "load", "coatings", "substrate", "friction")}
-    solution = fem_reference.solve(**problem, estimate_uncertainty=False)
+    return fem_reference.solve(**problem, estimate_uncertainty=False)
+
+
+def beside(case):
+    one = Hamilton(case.problem.radius, case.problem.load, *case.problem.substrate, case.problem.friction)
+    return SideBySide(one, 1.7 * one.contact_radius)
+
+
+@pytest.mark.parametrize(
+    ("coating", "friction", "solve", "files"),
+    [
+        ((420e9, 0.3), 0.0, solved, ("fem", "fem-far")),
+        ((420e9, 0.25), 0.3, solved, ("fem", "fem-far")),
+        ((210e9, 0.3), 0.2, beside, ("fem",)),
+    ],
+    ids=["coated", "sliding", "not round"],
+)
+def test_a_line_sampled_as_pyvista_does_by_default_has_the_stresses_of_the_solution(
+    coating, friction, solve, files, tmp_path, monkeypatch
+):
+    monkeypatch.setattr(vtk_files, "PLANES", dict(list(vtk_files.PLANES.items())[: len(files)]))
+    text = case_text("E = {}; nu = {}; thickness = 70e-6".format(*coating), more=f"friction = {friction}")
+    case = parse_case(text.encode(), tmp_path / "one.toml")
+    solution = solve(case)
     write_fields(case, {"fem_reference": solution}, tmp_path)
     a, h = solution.contact_radius, 70e-6
     x = np.linspace(0, 2 * a, 201)
-    for file in ("one-fem.vtm", "one-fem-far.vtm"):
-        blocks = pv.read(tmp_path / "fields" / file)
+    for file in files:
+        blocks = pv.read(tmp_path / "fields" / f"one-{file}.vtm")
         assert blocks.n_blocks == 2
         for z, layer in ((0, 0), (h, 0), (h, 1), (0.48 * a, 0), (0.3 * h, 0), (1.5 * a, 1)):
             ends = (0, 0, 1e6 * z), (2e6 * a, 0, 1e6 * z)

@@ -1,5 +1,7 @@
 """Layers with nu = 1/2 or near it, and bases far stiffer than their film: every source solves them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -35,6 +37,23 @@ def test_a_confined_incompressible_film_is_the_same_in_every_source(nu):
         assert error.max() <= 0.01 * exact.peak_pressure
     # what it costs to take 0.49 for it
     assert solve_exactly(film(0.49)).approach > 1.4 * exact.approach
+
+
+@pytest.mark.parametrize(
+    "problem",
+    [
+        replace(film(0.5), friction=0.2),
+        CoatedContact(6.651e-4, 3.094e-5, ((1.0342e6, 0.5 - 5.5e-8, 3.1314e-6),), (4.7218e8, 0.2)),
+    ],
+    ids=["ten times as wide as thick", "four times"],
+)
+def test_the_surface_of_a_confined_film_is_within_its_uncertainty_at_fixed_places(problem):
+    """There sigma_zz is -p, and as uncertain as that by the radius, whatever the other stresses are."""
+    exact, found = solve_exactly(problem), solve_semianalytic(problem)
+    places = Points(exact.contact_radius * np.array([0.0, 0.3, 0.5, 0.9, 1.0, 1.1]))
+    for quantity in ("pressure", "stress", "displacement"):
+        (value, U), (true, V) = (source.sample(places, quantity) for source in (found, exact))
+        assert (np.abs(value - true) <= U + V).all(), quantity
 
 
 def test_a_base_far_stiffer_than_its_film_is_solved_and_not_replaced():
