@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from case_texts import case_text
+from verification.sources.references.hamilton import Hamilton
 
 import fem_reference
 import semianalytic
@@ -11,7 +12,6 @@ from verification.problem.quantity import STRESSES
 from verification.running.checked_files import StoreError
 from verification.running.stored_fields import confirm_fields, write_fields
 from verification.sampling import vtk_files
-from verification.sources.references.hamilton import Hamilton
 
 pv = pytest.importorskip("pyvista")
 
