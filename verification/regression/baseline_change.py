@@ -13,7 +13,7 @@ from verification.regression.manifest import (
     differing_tests,
     manifest_of,
 )
-from verification.regression.number_drift import Drift, Numbers, State, drift, edges_of, measured
+from verification.regression.number_drift import Drift, Numbers, State, drift, measured
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.json_records import plain
 from verification.running.provenance import NOT_INSTALLED
@@ -152,10 +152,7 @@ def case_drift(result: CaseResult, baseline: Baseline) -> CaseDrift:
     """The changes of one case since ``baseline``."""
     now = {numbers.key: numbers for numbers in measured(result)}
     then = {numbers.key: numbers for numbers in baseline.cases.get(result.name, ())}
-    edges = edges_of(baseline.cases.get(result.name, ()))
-    drifts = [
-        drift(old, now[key], edges) if key in now else _unpaired(old, State.GONE) for key, old in then.items()
-    ]
+    drifts = [drift(old, now[key]) if key in now else _unpaired(old, State.GONE) for key, old in then.items()]
     drifts += [_unpaired(numbers, State.NEW) for key, numbers in now.items() if key not in then]
     message = "" if baseline.digests.get(result.name) == digest(result.text) else "its case file was changed"
     if result.name not in baseline.cases:

@@ -9,7 +9,7 @@ from verification.page.page_parts import Cell, Part, Section, Table, Value, tabl
 from verification.page.source_labels import source_label
 from verification.regression.baseline_change import COUNTED, CaseDrift, Regression, baseline_message
 from verification.regression.manifest import manifest_message
-from verification.regression.number_drift import FACTOR, RELATIVE, TOLERANCE, Drift, State
+from verification.regression.number_drift import FACTOR, KERNEL, RELATIVE, TOLERANCE, Drift, State
 from verification.running.case_result import CaseResult
 
 MOST = 40
@@ -22,11 +22,11 @@ _STATES = {
 }
 _RULE = (
     f"A number is the same where it differs by at most {scientific(RELATIVE, 1)} of the largest magnitude of "
-    "its profile, an uncertainty where it differs by at most 10 %. On another machine or with other versions "
-    "a run fails where a value left its baseline by more than its uncertainty, or by more than "
-    f"{scientific(TOLERANCE, 1)} of the scale where the uncertainty is less (the largest change between two "
-    f"machines was 5e-12), and where an uncertainty is more than {FACTOR:g} times that of the baseline or "
-    "less than a quarter of it. "
+    f"its profile, or by less than its uncertainty and {scientific(KERNEL, 1)}, which another kernel of the "
+    "linear algebra or another number of threads may cause; an uncertainty where it differs by at most 10 %. "
+    "On another machine or with other versions a run fails where a value left its baseline by more than its "
+    f"uncertainty, or by more than {scientific(TOLERANCE, 1)} of the scale where the uncertainty is less, "
+    f"and where an uncertainty is more than {FACTOR:g} times that of the baseline or below a quarter of it. "
     "Every point of every profile is compared, with values that the baseline rounds to 5e-11 at most."
 )
 

@@ -24,12 +24,11 @@ from verification.problem.line_profile import EDGE_LINE, Profile, all_lines
 from verification.problem.quantity import DISPLACEMENTS
 from verification.regression.baseline_change import State, drift, measured
 from verification.regression.manifest import ManifestDifference, differences, manifest_message, manifest_of
-from verification.regression.number_drift import ENDS
 from verification.running import contact_run as run
 from verification.running import published_run
 from verification.running.case_result import CaseResult, SourceResult, from_json
 from verification.running.checked_files import read_checked
-from verification.sampling.line_sampling import sample, sample_contact
+from verification.sampling.line_sampling import BESIDE_SHAPED, sample, sample_contact
 from verification.sampling.stress_plane import plane_invariants, sample_plane
 from verification.sources.source_record import Solver
 from verification.sources.source_registry import CLOSED, EXACT, METHODS, PUBLISHED
@@ -255,7 +254,8 @@ def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> 
     radii = [p for p in clean.profiles if (p.quantity, p.line) == ("contact_radius", "contact")]
     edge: float | Array = float(radii[-1].value[0])
     if case.problem.indenter is not None:
-        edge = places[EDGE_LINE][ENDS]
+        n = BESIDE_SHAPED.size  # the ends lie in the middle of the points around each
+        edge = places[EDGE_LINE][n - 1 :: 2 * n - 1]
     for line in all_lines(case.problem):
         found += sample(solution, source, line, places[line.name], case.problem, edge)
     return found

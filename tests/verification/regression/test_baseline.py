@@ -12,7 +12,6 @@ from synthetic_results import INFO, STEEL, contact, result_of
 from verification.cases.case_file import default_cases
 from verification.cases.published_file import published_cases
 from verification.commands.common.known_folders import BASELINE
-from verification.problem.line_profile import EDGE_LINE
 from verification.regression.baseline_change import (
     Baseline,
     against,
@@ -27,7 +26,6 @@ from verification.report.report_material import Material
 from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, to_json
 from verification.running.checked_files import write_checked
-from verification.sampling.line_sampling import BESIDE_SHAPED
 
 E, NU = STEEL
 RESULT = result_of(contact((2 * E, NU, 1.0)), text="title = 'stiff'\n")
@@ -66,35 +64,22 @@ def test_a_run_is_the_same_as_itself_through_the_file(tmp_path):
     assert found.count(State.SAME) == stored.last.numbers > 5000
 
 
-def test_a_value_at_the_contact_edge_is_compared_by_its_uncertainty():
-    profile = RESULT.profile_of["pressure", "surface", "fem_reference"]
-    a = RESULT.profile_of["contact_radius", "contact", "integral_equation"].value[0]
-    position = profile.position.copy()
-    at = int(np.abs(position - a).argmin())
-    position[at] = a
-    edge = replace(
-        RESULT,
-        profiles=tuple(replace(p, position=position) if p.line == "surface" else p for p in RESULT.profiles),
-    )
-    for index, by, state in (
-        (at, 5e-7, State.SAME),
-        (at, 1e-5, State.DRIFTED),
-        (at + 1, 5e-7, State.DRIFTED),
-    ):
-        assert case_drift(changed(edge, index, by, "pressure", "surface"), baseline_of(edge)).state is state
-
-
 @pytest.mark.parametrize(
-    ("index", "by", "state"),
-    [(5, 2e-8, State.SAME), (16, 2e-8, State.SAME), (5, 2e-5, State.DRIFTED), (6, 2e-8, State.DRIFTED)],
+    ("uncertainty", "by", "state", "beyond"),
+    [
+        (1e-5, 0.9e-6, State.SAME, False),  # another kernel of the linear algebra moves it so far, within U
+        (1e-5, 2e-6, State.DRIFTED, False),
+        (1e-7, 0.9e-6, State.DRIFTED, True),
+        (1e-12, 0.9e-8, State.DRIFTED, True),
+        (1e-12, 0.4e-10, State.SAME, False),
+    ],
 )
-def test_the_ends_of_a_contact_that_is_no_disc_are_compared_by_their_uncertainty(index, by, state):
-    beside = np.concatenate([-BESIDE_SHAPED[:0:-1], BESIDE_SHAPED])
-    position, value = np.concatenate([beside - 1, beside + 1]), np.linspace(1.0, 0.5, 22)
-    then = replace(measured(RESULT)[0], line=EDGE_LINE, position=position, value=value)
-    then = replace(then, scale=1.0, uncertainty=np.full(22, 1e-5))
-    now = replace(then, value=value + by * (np.arange(22) == index))
-    assert drift(then, now).state is state
+def test_a_change_counts_by_its_uncertainty_and_by_what_a_machine_explains(uncertainty, by, state, beyond):
+    value = np.linspace(1.0, 0.5, 22)
+    then = replace(measured(RESULT)[0], line="surface", position=np.arange(22.0), value=value, scale=1.0)
+    then = replace(then, uncertainty=np.full(22, uncertainty))
+    found = drift(then, replace(then, value=value + by * (np.arange(22) == 5)))
+    assert (found.state, found.beyond) == (state, beyond)
 
 
 def test_what_is_not_finite_is_strict_json_and_no_change_where_it_never_was_finite():
@@ -198,7 +183,7 @@ def test_a_run_that_agrees_but_drifted_ends_with_code_5(tmp_path):
     done = coatcheck(*words, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["cases"]["quick"]["baseline"] == "same"
-    moved = changed_by(run.results[0], 1e-6)
+    moved = changed_by(run.results[0], 2e-6)
     write_baseline(tmp_path / "base", updated(None, [moved], run.info, "off", "2026-11-21"))
     done = coatcheck(*words, cwd=tmp_path)
     assert done.returncode == 5
@@ -209,7 +194,7 @@ def test_a_run_that_agrees_but_drifted_ends_with_code_5(tmp_path):
     assert report["baseline"]["cases"][0]["drifted"] == 1
     said = coatcheck("run", "quick.toml", "--resume", "--baseline", "base", cwd=tmp_path).stdout
     assert "drifted" in next(line for line in said.splitlines() if line.split()[:1] == ["quick"])
-    assert "1.0e-6" in " ".join(said.split())
+    assert "2.0e-6" in " ".join(said.split())
     path_in(tmp_path / "base").write_text("{}")
     done = coatcheck(*words, cwd=tmp_path)
     assert done.returncode == 2

@@ -63,7 +63,7 @@ def of_regression() -> Answers:
     for what, result, here, elsewhere in (
         ("the same numbers", _result(), False, False),
         ("a value off by 5 Pa", _changed(5.0), False, False),
-        ("a value off by 50 Pa", _changed(50.0), True, False),
+        ("a value off by 50 Pa, as another kernel may cause", _changed(50.0), False, False),
         ("a value off by half its U", _changed(-5e3), True, False),
         ("a value off by 1.5 U", _changed(-1.5e4), True, True),
         ("a value that is NaN", _changed(np.nan), True, True),
@@ -136,7 +136,7 @@ def of_codes() -> Answers:
     yield "less judged", run_code([_result()], less, passed=True), 6
     yield "more judged", run_code([_result()], more, passed=True), 0
     yield "less judged, not converged", run_code([_result(Outcome.NO_RESULT)], less, passed=True), 3
-    moved, far = _changed(50.0), _changed(1.5e4)
+    moved, far = _changed(5e3), _changed(1.5e4)
     yield "drifted here", run_code([moved], _beside(moved), passed=True), 5
     yield "drifted within U elsewhere", run_code([moved], _beside(moved, ELSEWHERE), passed=True), 0
     yield "drifted beyond U elsewhere", run_code([far], _beside(far, ELSEWHERE), passed=True), 5
