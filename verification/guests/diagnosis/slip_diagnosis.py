@@ -189,11 +189,11 @@ class Diagnosis:
         return {k: found.get(k, np.full_like(v, np.nan)) for k, v in self.exact.items()}
 
     def _misfit(self, key: Key, g: Array, p: Array) -> float | None:
-        """|g - p| over the larger of both, away from the edge; None where fewer than half are known."""
+        """|g - p| over the largest of g, p and the exact value, off the edge; None where few are known."""
         keep = np.isfinite(p) & self._judged.get(key[1], True)
         if 2 * keep.sum() < g.size / 2 or not keep.any():
             return None
-        size = max(float(np.linalg.norm(g[keep])), float(np.linalg.norm(p[keep])))
+        size = max(float(np.linalg.norm(one[keep])) for one in (g, p, self.exact[key]))
         return float(np.linalg.norm((g - p)[keep])) / size if size else 0.0
 
     @cached_property
@@ -219,11 +219,17 @@ class Diagnosis:
         """Whether a misfit that is left is no error, or a small part of what there was."""
         return misfit is not None and misfit <= max(EXPLAINED * self._before[key], self.caps.get(key, 0.0))
 
+    def _spoils(self, key: Key, misfit: float) -> bool:
+        """Whether a right answer is further from what the slips say than from the exact value."""
+        return not self._right(key, misfit) and misfit > 2 * self._before[key]
+
     def _explains(self, misfits: dict[Key, float | None]) -> bool:
         """Whether every number of the contact and enough of what failed is explained."""
         judged = {k: self._right(k, m) for k, m in misfits.items() if m is not None}
         failed = [k for k in self.wrong if k in judged]
-        spoilt = [k for k, right in judged.items() if not right and k not in self.wrong]
+        spoilt = [
+            k for k, m in misfits.items() if m is not None and k not in self.wrong and self._spoils(k, m)
+        ]
         numbers = all(judged.get(k, True) for k in misfits if k[0] in SCALARS)
         good = sum(judged[k] for k in failed)
         return numbers and 2 * good >= len(self.wrong) and good >= SHARE * (len(failed) + len(spoilt))
