@@ -1,7 +1,8 @@
 """A problem in words of the command line as the text of a case file.
 
 ball "10 mm" or "10 mm, 210 GPa, 0.3" (radius; of an elastic ball E, nu), coating "3 um, 450 GPa, 0.22"
-(thickness, E, nu), substrate "210 GPa, 0.3"; bare numbers are SI. "d = 20 mm" is a diameter, and a name may
+(thickness, E, nu), substrate "210 GPa, 0.3"; bare numbers are SI. Strengths and residual stress may follow:
+"TiN 2 um, 450 GPa, 0.25, strength 2 GPa, residual -1.5 GPa". "d = 20 mm" is a diameter, and a name may
 come first: "DLC 3 um, 450 GPa, 0.22", "M2 HSS 60 HRC 220 GPa, 0.3", "100Cr6 d = 6 mm, 210 GPa, 0.3". The
 reader of case files checks the numbers: both have the same limits, units, messages.
 """
@@ -19,7 +20,24 @@ _SIZED = re.compile(rf"({_D}|{_R})?\s*=?\s*({_VALUE}?)(?:\s+({_D}|{_R}))?")
 _NAMED = re.compile(rf"(.*?\S)[\s:]+({_SIZE})")
 # A name does not begin with a number, but for that of a steel, 1.3505; nor does it hold a size.
 _NO_NAME = re.compile(rf"(?!1\.\d{{4}}\b)[+-]?[\d.,]+(?:\s|$)|.*\b{NUMBER} ?(?:[numk]?m|µm|[kMGT]?Pa)\b")
+_REPEATED = re.compile(r"(\d{1,3})\s*[x*×]\s*\((.*)\)", re.DOTALL)
 _COMMA = re.compile(r"\d,\d")
+# What may be stated of a layer behind its numbers, with the keys of a case file.
+_KEYS = {
+    "strength": "strength",
+    "tensile strength": "strength",
+    "residual": "residual_stress",
+    "residual stress": "residual_stress",
+    "yield": "yield_strength",
+    "yield strength": "yield_strength",
+    "adhesion": "adhesion",
+    "hardness": "hardness",
+    "expansion": "expansion",
+}
+_STATED = re.compile(
+    rf"({'|'.join(sorted(_KEYS, key=len, reverse=True))})\s*[=:]?\s*([-+\d.].*)", re.IGNORECASE
+)
+STATED = '"strength 2 GPa", "residual -1.5 GPa", "yield 3 GPa", "adhesion 400 MPa"'
 FORMS = {
     "--ball": ("radius", "E", "nu", "100Cr6 d = 6 mm, 210 GPa, 0.3"),
     "--coating": ("thickness", "E", "nu", "DLC 3 um, 450 GPa, 0.22"),
@@ -43,7 +61,7 @@ def case_text(
 
     Raises ValueError where the number of words is wrong, naming the option.
     """
-    coated, elastic = ", ".join(_coating("--ball-coating", text) for text in on_ball), ""
+    coated, elastic = ", ".join(_layers("--ball-coating", text) for text in on_ball), ""
     key, size = _size(ball)
     if "," in ball or on_ball or _named(ball.strip())[0]:
         called, (size, *solid) = _solid("--ball", ball)
@@ -52,7 +70,7 @@ def case_text(
         key, size = _size(size)
     called, solid = _solid("--substrate", substrate)
     E, nu = map(_toml, solid)
-    on = ", ".join(_coating("--coating", text) for text in coatings)
+    on = ", ".join(_layers("--coating", text) for text in coatings)
     pressed = "".join(
         f"{key} = {_toml(word)}\n" for key, word in (("load", load), ("approach", approach)) if word
     )
@@ -79,6 +97,15 @@ def _named(word: str) -> tuple[str, str]:
     return (name, found[2]) if found and not _NO_NAME.match(name) else ("", word)
 
 
+def _layers(option: str, text: str) -> str:
+    """A coating, or several that repeat: "10 x (TiN 100 nm, 450 GPa, 0.25 / CrN 100 nm, 250 GPa, 0.22)"."""
+    found = _REPEATED.fullmatch(text.strip())
+    if found is None:
+        return _coating(option, text)
+    stack = ", ".join(_coating(option, part) for part in re.split(r"\s/\s", found[2]))
+    return f"{{ repeat = {found[1]}, stack = [{stack}] }}"
+
+
 def _coating(option: str, text: str) -> str:
     called, solid = _solid(option, text)
     thickness, E, nu = map(_toml, solid)
@@ -88,17 +115,20 @@ def _coating(option: str, text: str) -> str:
 def _solid(option: str, text: str) -> tuple[str, list[str]]:
     """The entry of a name, "" without, and the words between the commas."""
     *names, example = FORMS[option]
-    words = [word.strip() for word in text.split(",")]
+    every = [word.strip() for word in text.split(",")]
+    more = [found for word in every[1:] if (found := _STATED.fullmatch(word))]
+    words = [word for word in every if not _STATED.fullmatch(word)] or every
+    stated = "".join(f"{_KEYS[found[1].casefold()]} = {_toml(found[2])}, " for found in more)
     name, words[0] = _named(words[0])
     if not name and len(words) == len(names) + 1 and not re.match(NUMBER + r"(?!\w)", words[0]):
         name = words.pop(0).rstrip(":")
     if len(words) != len(names):
         form = f'give {", ".join(names)}, {len(names)} parts, such as "{example}"'
         comma = "; write decimals with a point, such as 0.3" if _COMMA.search(text) else ""
-        more = "" if comma or len(words) < 4 else "; a residual stress goes into a case file"
-        raise ValueError(f'{option} "{text}": {form}{comma}{more}')
+        named = "" if comma or len(words) < 4 else f"; name what else is stated, such as {STATED}"
+        raise ValueError(f'{option} "{text}": {form}{comma}{named}')
     called = f"name = {json.dumps(name, ensure_ascii=False)}, " if name else ""
-    return called, words
+    return called + stated, words
 
 
 def _toml(word: str) -> str:
