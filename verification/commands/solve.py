@@ -15,6 +15,7 @@ from rich.table import Column, Table
 from threadpoolctl import threadpool_limits
 
 from verification.cases.case_file import Case, default_cases, parse_case, read_case
+from verification.cases.materials import SHIPPED as SHIPPED_MATERIALS
 from verification.cases.plausibility import beyond_limits, refused
 from verification.cases.toml_file import NO_SOURCE, load_toml
 from verification.commands.common.command_error import CommandError, no_result
@@ -81,6 +82,7 @@ def solve(
     ball_coating: Annotated[list[str] | None, Parameter(negative="")] = None,
     check: Flag = False,
     every: Annotated[bool, Parameter(name="--all", negative="")] = False,
+    materials: Path = SHIPPED_MATERIALS,
     plot: Path | None = None,
     force: Flag = False,
     strict: Strict = False,
@@ -104,13 +106,15 @@ def solve(
         friction: Coefficient f; the ball slides in +x, and the trailing edge is at x < 0.
         ball_coating: The same of a coating on the ball, from its surface inwards.
         check: Solve by finite elements too and show their difference.
+        materials: File of the materials that may be given by name alone, see coatcheck materials: "DLC 2 um",
+            "100Cr6".
         every: Show every layer of a stack of many, not the worst of each material alone.
         plot: Write a figure of the stresses, FILE.png, FILE.pdf or FILE.svg.
         force: Solve although a number looks like a slip of its unit.
     """
     begin = time.perf_counter()
     given = (ball, load, approach, coating, substrate, friction, ball_coating)
-    case = _from_file(file, given) if file is not None else _from_options(*given)
+    case = _from_file(file, given) if file is not None else _from_options(*given, materials)
     if plot is not None:
         require_format(plot)
     if not force:
@@ -121,7 +125,7 @@ def solve(
         require_gmsh()
     with _working("semi-analytical", as_json):
         first = _answer(case, METHOD)
-    coarser = ()
+    coarser: tuple[ContactAnswer, ...] = ()
     if case.layers:
         with _working("fewer sub-layers", as_json):
             coarser = _coarser(case)
@@ -207,12 +211,14 @@ def _from_options(
     substrate: str | None,
     friction: float | None,
     ball_coating: list[str] | None,
+    materials: Path,
 ) -> Case:
     if ball is None or substrate is None or (load is None and approach is None):
         asked = "--ball, --load or --approach, and --substrate"
         raise CommandError(f"give a case file, or {asked}; see coatcheck solve --help")
     try:
-        text = case_text(ball, load, substrate, coating or [], friction or 0.0, ball_coating or [], approach)
+        layers = coating or [], friction or 0.0, ball_coating or []
+        text = case_text(ball, load, substrate, *layers, approach, materials)
     except ValueError as error:
         raise CommandError(str(error)) from None
     return parse_case(text.encode("utf-8", errors="replace"), Path("options"))

@@ -196,10 +196,12 @@ def layer_modes(
     numerics: Mapping[str, Any] | None = None,
     residual: Mapping[str, tuple[float, ...]] | None = None,
     layers: Mapping[str, tuple[int, ...]] | None = None,
+    *,
+    loads: bool = True,
 ) -> tuple[LayerMode, ...]:
     """Every mode of ``first``, the answer to ``problem``, that has one of ``strengths``.
 
-    numerics, residual, layers : as of ``answer``, which solves other loads.
+    numerics, residual, layers : as of ``answer``, which solves other loads.   loads : whether it does.
     """
     fast = {**(numerics or {}), "estimate_uncertainty": False}
     known = {problem.load: _by_place(first)}
@@ -218,7 +220,7 @@ def layer_modes(
         def use(load: float, place: Place = place, strength: float = strength) -> float:
             return max(stress_at(load)[place].value / strength, 1e-6)
 
-        load = _load_of(use, known, rest.get(place, 0.0) / strength)
+        load = _load_of(use, known, rest.get(place, 0.0) / strength) if loads else None
         nearest = min(known, key=lambda one: abs(log(one / (load or problem.load))))
         there = known[nearest][place]
         found.append(LayerMode(*place, at.value, strength, load, there.x, there.z))
