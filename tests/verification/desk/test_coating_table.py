@@ -1,9 +1,12 @@
-"""Several coatings from one table: each row is what solve answers; stacks of many layers are summarised."""
+"""Several coatings from one table, many layers, the answer of a notebook: each is what solve says."""
 
 import csv
+import json
 
 import pytest
+from quick_case import coatcheck
 
+import verification
 from verification.cases.case_file import parse_case
 from verification.cases.toml_file import CaseError
 from verification.desk.answer_stresses import Extreme
@@ -74,3 +77,21 @@ def test_of_many_layers_the_worst_of_each_material_and_interface_stands(tmp_path
     text = case_text("3 mm", "20 N", "210 GPa, 0.3", [layers.replace("10 x", "3 x")])
     few = parse_case(text.encode(), tmp_path / "few")
     assert worst_of_each(few, found[:6]) == tuple(found[:6])
+
+
+def test_the_answer_in_python_is_that_of_the_command(tmp_path):
+    words = {"ball": "6 mm", "load": "20 N", "substrate": "100Cr6, yield 1 GPa", "friction": 0.2}
+    found = verification.answer(**words, coatings=["<i> 2 um, 450 GPa, 0.25"])
+    options = [word for key, value in words.items() for word in (f"--{key}", str(value))]
+    done = coatcheck("solve", *options, "--coating", "<i> 2 um, 450 GPa, 0.25", "--json", cwd=tmp_path)
+    content = json.loads(done.stdout)
+    assert content["verdict"] == found.verdict
+    assert str(found).endswith(found.verdict)
+    values = [at["value"] for at in content["answer"]["extremes"]]
+    assert values == pytest.approx([at.value for at in found.found.extremes], nan_ok=True)
+    page = found._repr_html_()
+    assert page.count("<tr>") == len(found.rows()) + 1
+    assert "data:image/png" in page
+    assert "<i>" not in page
+    with pytest.raises(ValueError, match="--substrate"):
+        verification.answer(ball="6 mm", load="20 N")
