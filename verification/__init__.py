@@ -6,16 +6,18 @@
 'Stiff coating, E1/E2 = 4, h = a_h'
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from verification.cases.case_file import Case
+    from verification.desk.design_answer import DesignAnswer
     from verification.problem.coated_contact import CoatedContact, Solution
     from verification.problem.point_answers import Points
     from verification.running.case_result import CaseResult
 
-__all__ = ["Points", "compare", "read_case", "solve"]
+__all__ = ["Points", "answer", "compare", "read_case", "solve"]
 
 
 def __getattr__(name: str) -> Any:
@@ -36,6 +38,33 @@ def read_case(name: str | Path) -> "Case":
 
     shipped = case_file.default_cases()
     return case_file.read_case(shipped.get(str(name), Path(name)))
+
+
+def answer(
+    case: "Case | None" = None,
+    *,
+    ball: str = "",
+    load: str | None = None,
+    substrate: str = "",
+    coatings: Sequence[str] = (),
+    friction: float = 0.0,
+    on_ball: Sequence[str] = (),
+    approach: str | None = None,
+) -> "DesignAnswer":
+    """What ``coatcheck solve`` answers to a case, or to a problem in the words of its options.
+
+    ``answer(ball="10 mm", load="20 N", coatings=["TiN 2 um, 450 GPa, 0.25"], substrate="210 GPa, 0.3")``
+    Printed it is a sentence and, where strengths are stated, a verdict; a notebook adds table and figure.
+    Raises ValueError for words that state no problem, and what the semi-analytical method raises.
+    """
+    from verification.cases.case_file import parse_case
+    from verification.desk.case_wording import case_text
+    from verification.desk.design_answer import design_answer
+
+    if case is None:
+        text = case_text(ball, load, substrate, coatings, friction, on_ball, approach)
+        case = parse_case(text.encode(), Path("words"))
+    return design_answer(case)
 
 
 def solve(case: "Case | CoatedContact", source: str = "semianalytic", **numerics: Any) -> "Solution":

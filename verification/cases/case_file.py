@@ -18,6 +18,7 @@ from verification.cases.solid_schema import (
     Material,
     TemperatureChange,
     WholeCoating,
+    WholeCoatings,
     in_metres,
     limits_of,
 )
@@ -138,7 +139,7 @@ class _CaseProblem(Sized):
     indenter: IndenterEntry | None = None
     friction: Friction = 0.0
     substrate: Material
-    coatings: Annotated[list[WholeCoating], Field(default_factory=list, max_length=50)]
+    coatings: WholeCoatings = Field(default_factory=list)
     ball: BallEntry | None = None
     temperature_change: TemperatureChange | None = None
 

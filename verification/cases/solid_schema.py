@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Annotated, Any
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from verification.cases.graded_coating import LAYERS, GradedCourse, Modulus, ModulusTable, moduli
 from verification.cases.toml_file import Poisson, Positive, Strict
@@ -15,16 +15,23 @@ Expansion = Annotated[float, Field(ge=-1e-3, le=1e-3)]
 TemperatureChange = Annotated[float, Field(ge=-5000, le=5000)]
 
 
+LIMITS = ("hardness", "yield_strength", "strength", "adhesion")
+
+
 class Limited(Strict):
-    """A material by ``name``, with stresses beyond which the contact is not elastic."""
+    """A material by ``name``, with stresses beyond which the contact is not elastic.
+
+    strength : the tension at which it cracks.
+    """
 
     name: Annotated[str, Field(min_length=1, max_length=30)] = ""
     hardness: Pascals | None = None
     yield_strength: Pascals | None = None
+    strength: Pascals | None = None
 
     def limits(self, key: str) -> dict[str, float]:
         """Those given [Pa], by their keys after ``key``."""
-        given = {"hardness": self.hardness, "yield_strength": self.yield_strength}
+        given = {name: getattr(self, name, None) for name in LIMITS}
         return {f"{key}.{name}": value for name, value in given.items() if value is not None}
 
 
@@ -39,8 +46,9 @@ class Material(Limited):
 class Coating(Limited):
     """One coating; of a graded one E is a course over its depth, followed by ``layers`` sub-layers.
 
-    E and thickness may be missing where a study sweeps them.   residual_stress : given, or by the mismatch of
-    its thermal ``expansion``.
+    E and thickness may be missing where a study sweeps them.   residual_stress : of its growth, to which the
+    mismatch of its thermal ``expansion`` adds.   adhesion : the shear, or the tension, at which it comes off
+    what lies below.
     """
 
     E: Modulus | None = None
@@ -50,22 +58,21 @@ class Coating(Limited):
     layers: Annotated[int, Field(ge=2, le=LAYERS)] | None = None
     residual_stress: AnyPascals | None = None
     expansion: Expansion | None = None
+    adhesion: Pascals | None = None
 
     def residual(self, E: float, nu: float, below: float | None, change: float | None) -> float:
-        """Equibiaxial residual stress [Pa]: that given, or by thermal mismatch, or 0.
+        """Equibiaxial residual stress [Pa]: that given, from growth, and that of thermal mismatch.
 
         sigma = E/(1 - nu) (alpha_s - alpha) dT, of a thin film whose strain is that of its thick substrate.
         L. B. Freund, S. Suresh, Thin Film Materials, Cambridge University Press, 2003, chapter 2.
         below : expansion of the substrate alpha_s [1/K].   change : of the temperature since deposition [K].
-        Raises ValueError where both are given, or the mismatch lacks a part.
+        Raises ValueError where the mismatch lacks a part.
         """
         if self.expansion is None:
             return self.residual_stress or 0.0
-        if self.residual_stress is not None:
-            raise ValueError("residual_stress and expansion are both given; give one")
         if below is None or change is None:
             raise ValueError("expansion requires that of the substrate, and problem.temperature_change")
-        return E / (1 - nu) * (below - self.expansion) * change
+        return (self.residual_stress or 0.0) + E / (1 - nu) * (below - self.expansion) * change
 
     @model_validator(mode="before")
     @classmethod
@@ -127,10 +134,29 @@ class WholeCoating(Coating):
         return self
 
 
+def _written_out(given: Any) -> Any:
+    """The coatings of a list with each { repeat = 10, stack = [ ... ] } in it written out."""
+    found = []
+    for i, one in enumerate(given if isinstance(given, list) else (), start=1):
+        if not (isinstance(one, dict) and {"repeat", "stack"} & set(one)):
+            found.append(one)
+            continue
+        count, stack = one.get("repeat"), one.get("stack")
+        if set(one) != {"repeat", "stack"} or not isinstance(stack, list) or not stack:
+            raise ValueError(f"entry {i} repeats coatings: give it repeat and stack = [ ... ], no other key")
+        if type(count) is not int or not 1 <= count <= LAYERS:
+            raise ValueError(f"entry {i} has repeat = {count!r}; it must be 1 to {LAYERS}")
+        found += count * stack
+    return found if isinstance(given, list) else given
+
+
+WholeCoatings = Annotated[list[WholeCoating], BeforeValidator(_written_out), Field(max_length=LAYERS)]
+
+
 class BallEntry(Material):
     """An elastic ball; its coatings from its surface inwards."""
 
-    coatings: Annotated[list[WholeCoating], Field(default_factory=list, max_length=50)]
+    coatings: WholeCoatings = Field(default_factory=list)
 
     def all_limits(self) -> dict[str, float]:
         """Hardness and yield strength [Pa] of the ball with its coatings, by their keys."""

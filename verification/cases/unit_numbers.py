@@ -68,7 +68,7 @@ class InSI(float):
 
 # Keys whose units are those of results. Moduli are in GPa in any file, without a wish for stresses in GPa.
 _LENGTHS = ("thickness",)
-_STRESSES = ("strength", "residual_stress", "hardness", "yield_strength")
+_STRESSES = ("strength", "residual_stress", "hardness", "yield_strength", "adhesion")
 
 
 def units_of(file: BaseModel) -> Units:

@@ -2,8 +2,8 @@
 
 import math
 import time
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from textwrap import wrap
 from typing import Annotated, Any
@@ -11,11 +11,11 @@ from typing import Annotated, Any
 from cyclopts import Parameter
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import Progress
 from rich.table import Column, Table
 from threadpoolctl import threadpool_limits
 
 from verification.cases.case_file import Case, default_cases, parse_case, read_case
+from verification.cases.materials import SHIPPED as SHIPPED_MATERIALS
 from verification.cases.plausibility import beyond_limits, refused
 from verification.cases.toml_file import NO_SOURCE, load_toml
 from verification.commands.common.command_error import CommandError, no_result
@@ -42,7 +42,17 @@ from verification.desk.contact_answer import (
     usual_seconds,
     with_slicing,
 )
-from verification.desk.layer_limits import LayerLimit, layer_limits, layer_name, yield_strengths
+from verification.desk.layer_limits import (
+    MODES,
+    LayerMode,
+    layer_modes,
+    place_name,
+    strain_warnings,
+    strengths_of,
+    unusual,
+    verdict,
+)
+from verification.desk.many_layers import many, worst_of_each
 from verification.desk.stack_text import body_label, described, outside_verified, stack, units_of
 from verification.judging.outcome import Outcome
 from verification.problem.point_answers import FLAT
@@ -71,6 +81,8 @@ def solve(
     friction: float | None = None,
     ball_coating: Annotated[list[str] | None, Parameter(negative="")] = None,
     check: Flag = False,
+    every: Annotated[bool, Parameter(name="--all", negative="")] = False,
+    materials: Path = SHIPPED_MATERIALS,
     plot: Path | None = None,
     force: Flag = False,
     strict: Strict = False,
@@ -88,17 +100,21 @@ def solve(
         load: "20 N"; bare numbers are SI here and in all other options.
         approach: "0.5 um" in place of the load: of distant points of both bodies.
         coating: "THICKNESS, E, NU", such as "3 um, 450 GPa, 0.22"; once for each, from the surface down. A
-            name may come first: "DLC 3 um, 450 GPa, 0.22".
-        substrate: "E, NU", such as "210 GPa, 0.3" or "steel 210 GPa, 0.3".
+            name may come first, strengths may follow: "TiN 3 um, 450 GPa, 0.25, strength 2 GPa,
+            residual -1.5 GPa, adhesion 400 MPa, yield 9 GPa". Many layers: "10 x (A 100 nm, ... / B ...)".
+        substrate: "E, NU", such as "210 GPa, 0.3" or "steel 210 GPa, 0.3, yield 2 GPa"; likewise a ball.
         friction: Coefficient f; the ball slides in +x, and the trailing edge is at x < 0.
         ball_coating: The same of a coating on the ball, from its surface inwards.
         check: Solve by finite elements too and show their difference.
+        materials: File of the materials that may be given by name alone, see coatcheck materials: "DLC 2 um",
+            "100Cr6".
+        every: Show every layer of a stack of many, not the worst of each material alone.
         plot: Write a figure of the stresses, FILE.png, FILE.pdf or FILE.svg.
         force: Solve although a number looks like a slip of its unit.
     """
     begin = time.perf_counter()
     given = (ball, load, approach, coating, substrate, friction, ball_coating)
-    case = _from_file(file, given) if file is not None else _from_options(*given)
+    case = _from_file(file, given) if file is not None else _from_options(*given, materials)
     if plot is not None:
         require_format(plot)
     if not force:
@@ -107,35 +123,35 @@ def solve(
     print_warnings(case.warnings, case.name, strict=strict, silent=as_json)
     if check:
         require_gmsh()
-    bars = partial(progress_bar, Console(stderr=True), silent=as_json)
-    with bars() as bar:
-        task = bar.add_task("semi-analytical", total=1 + bool(case.layers))
+    with _working("semi-analytical", as_json):
         first = _answer(case, METHOD)
-        bar.update(task, advance=1, description="fewer sub-layers")
-        coarser = _coarser(case)
-        halved = differences(first, coarser[0]) if coarser else ()
-        stated = with_slicing(first, coarser)
-        bar.update(task, advance=bool(case.layers))
+    coarser: tuple[ContactAnswer, ...] = ()
+    if case.layers:
+        with _working("fewer sub-layers", as_json):
+            coarser = _coarser(case)
+    halved = differences(first, coarser[0]) if coarser else ()
+    stated = with_slicing(first, coarser)
     second = None
     if check:
         if not as_json:
             print_error(f"finite elements: about {usual_seconds(case.problem):.0f} s of processor time")
-        with bars() as bar:
-            bar.add_task("finite elements", total=1)
+        with _working("finite elements", as_json):
             second = _answer(case, SECOND)
-    limited = _limited(case, first, bars)
-    late = [line for one in limited for line in one.warnings(layer_name(case, one))]
+    with _working("loads at which something fails", as_json or not case.limits):
+        numerics = case.numerics.get(METHOD)
+        modes = layer_modes(
+            case.problem, first, strengths_of(case.limits), numerics, case.residual, case.layers
+        )
+    late = [line for one in modes for line in one.warnings(place_name(case, one))]
+    late += strain_warnings(case, first)
     late += beyond_limits(first.numbers["peak_pressure"][0], case.limits)
     print_warnings(late, case.name, strict=strict, silent=as_json)
-    apart = differences(first, second) if second is not None else ()
-    if not (as_json or strict):
-        _print(case, stated, apart, halved, limited)
-    with bars() as bar:
-        task = bar.add_task("error of the model", total=1)
+    with _working("error of the model", as_json):
         beyond = model_error(case.problem)
-        bar.update(task, advance=1)
     costs = beyond.warnings(told=case.warnings)
     print_warnings(costs, case.name, strict=strict, silent=as_json)
+    apart = differences(first, second) if second is not None else ()
+    remarks = (*case.remarks, *unusual(case, first))
     if plot is not None:
         from verification.desk.answer_figure import write
 
@@ -150,24 +166,32 @@ def solve(
             "residual_stress": case.residual,
             "case_file": case.text,
             "warnings": [*case.warnings, *late, *costs],
-            "remarks": case.remarks,
+            "remarks": remarks,
             "model_error": {"message": beyond.message(), **encode(beyond)},
             "answer": encode(stated),
-            "layers": [encode(one) | {"utilisation": one.utilisation} for one in limited],
+            "verdict": verdict(case, modes),
+            "modes": [encode(one) | {"utilisation": one.utilisation} for one in modes],
             "check": second and encode(second),
             "differences": [encode(one) for one in apart],
             "half_of_the_sublayers": [encode(one) for one in halved],
         }
         print_json(content)
     else:
-        if strict:
-            _print(case, stated, apart, halved, limited)
+        _print(case, stated, apart, halved, modes, remarks, every=every)
         _print_model(case, beyond, checked=second is not None)
         elements = f", finite elements {second.seconds:.1f} s" if second else ""
         total = time.perf_counter() - begin
         print_out(f"time: semi-analytical {first.seconds:.1f} s{elements}; in all {total:.1f} s")
     agree = all(difference.within for difference in apart)
     return EXIT[Outcome.AGREES if agree else Outcome.DISAGREES]
+
+
+@contextmanager
+def _working(what: str, silent: bool) -> Iterator[None]:
+    """A bar with the time that ``what`` takes."""
+    with progress_bar(Console(stderr=True), silent=silent) as bar:
+        bar.add_task(what, total=1)
+        yield
 
 
 def _from_file(file: str, given: Sequence[Any]) -> Case:
@@ -187,12 +211,14 @@ def _from_options(
     substrate: str | None,
     friction: float | None,
     ball_coating: list[str] | None,
+    materials: Path,
 ) -> Case:
     if ball is None or substrate is None or (load is None and approach is None):
         asked = "--ball, --load or --approach, and --substrate"
         raise CommandError(f"give a case file, or {asked}; see coatcheck solve --help")
     try:
-        text = case_text(ball, load, substrate, coating or [], friction or 0.0, ball_coating or [], approach)
+        layers = coating or [], friction or 0.0, ball_coating or []
+        text = case_text(ball, load, substrate, *layers, approach, materials)
     except ValueError as error:
         raise CommandError(str(error)) from None
     return parse_case(text.encode("utf-8", errors="replace"), Path("options"))
@@ -205,29 +231,18 @@ def _answer(case: Case, source: str) -> ContactAnswer:
         raise no_result(f"{case.name}: {source}: {message_of(error)}") from None
 
 
-def _limited(case: Case, first: ContactAnswer, bars: Callable[[], Progress]) -> tuple[LayerLimit, ...]:
-    """Strain of each layer, and where it has a yield strength the load at which it begins to yield."""
-    strengths = yield_strengths(case.limits)
-    with bars() as bar:
-        task = bar.add_task("loads at which layers yield", total=1, visible=bool(strengths))
-        found = layer_limits(
-            case.problem, first, strengths, case.numerics.get(METHOD), case.residual, case.layers
-        )
-        bar.update(task, advance=1)
-    return found
-
-
-def _yielding(case: Case, limited: Sequence[LayerLimit]) -> Table | None:
-    """The layers that have a yield strength; None without any."""
+def _limits(case: Case, modes: Sequence[LayerMode]) -> Table:
+    """How near each place that has a strength is to failing."""
     units = units_of(case.problem)
-    heads = (f"von Mises {units.stress}", f"yield {units.stress}", "used", f"from {units.force}")
-    table = _table(("yielding",), heads)
-    for one in limited:
-        if one.yield_strength is not None and one.utilisation is not None:
-            begins = "-" if one.yields_from is None else f"{one.yields_from / units.newton:.3g}"
-            stresses = (f"{stress / units.pascal:.4g}" for stress in (one.von_mises, one.yield_strength))
-            table.add_row(layer_name(case, one), *stresses, f"{one.utilisation:.0%}", begins)
-    return table if table.row_count else None
+    heads = (units.stress, f"strength {units.stress}", "used", "safety", f"from {units.force}")
+    table = _table(("limit",), heads)
+    for one in sorted(modes, key=lambda one: -one.utilisation):
+        begins = "-" if one.load is None else f"{one.load / units.newton:.3g}"
+        stresses = (f"{stress / units.pascal:.4g}" for stress in (one.stress, one.strength))
+        style = "bold red" if one.utilisation > 1 else ""
+        name = escape(f"{place_name(case, one)} {MODES[one.quantity][0]}")
+        table.add_row(name, *stresses, f"{one.utilisation:.0%}", f"{one.safety:.3g}", begins, style=style)
+    return table
 
 
 def _coarser(case: Case) -> tuple[ContactAnswer, ...]:
@@ -247,7 +262,10 @@ def _print(
     first: ContactAnswer,
     apart: Sequence[AnswerDifference],
     halved: Sequence[AnswerDifference],
-    limited: Sequence[LayerLimit],
+    modes: tuple[LayerMode, ...],
+    remarks: Sequence[str],
+    *,
+    every: bool,
 ) -> None:
     besides = {"elements − this": apart, "half the sub-layers − this": halved}
     more = {head: {one.key: one for one in found} for head, found in besides.items() if found}
@@ -259,6 +277,7 @@ def _print(
         beyond = apart and not more["elements − this"][key].within
         return [f"[bold red]{s}[/]" if beyond and h.startswith("elements") else s for h, s in shown.items()]
 
+    shown_of = "" if every or not many(case) else "the worst of each material and interface; all with --all"
     numbers = _table(("contact", "unit"), ("value", "±", *more))
     shown_in = (units.stress, f"± {units.stress}", f"x {units.length}", f"z {units.length}")
     table = _table(("largest", "place"), (*shown_in, *(f"{head} {units.stress}" for head in more)))
@@ -268,7 +287,7 @@ def _print(
         cells = [_value(value / scale, stated and stated / scale), _spread(stated, scale)]
         numbers.add_row(QUANTITIES[name].symbol, unit, *cells, *checked((name,), scale))
     body = FLAT
-    for at in first.extremes:
+    for at in first.extremes if every else worst_of_each(case, first.extremes):
         if at.body != body:
             table.add_row("")
             body = at.body
@@ -279,7 +298,12 @@ def _print(
         shown = [_value(at.value / units.pascal, at.uncertainty / units.pascal)]
         shown.append(_spread(at.uncertainty, units.pascal))
         table.add_row(at.quantity, where, *shown, *places, *checked(key, units.pascal))
-    said = (summary(case.problem, first, case.names), agreement(first, tuple(apart)))
+    said = (
+        summary(case.problem, first, case.names),
+        verdict(case, modes),
+        *(f"Remark: {line}." for line in remarks),
+        agreement(first, tuple(apart)),
+    )
     print_out(
         f"[bold]{escape(case.title)}[/]",
         escape(stack(case)),
@@ -287,16 +311,17 @@ def _print(
         "",
         *(escape(line) for text in said for line in wrap(text, COLUMNS)),
         "",
-        *(escape(line) for line in described(case)),
+        *(escape(line) for line in described(case, every=every)),
         "",
         numbers,
         "",
         table,
         "",
         "tension positive, in the plane y = 0, x along sliding, z into each body",
+        *filter(None, [shown_of]),
     )
-    if (yielding := _yielding(case, limited)) is not None:
-        print_out("", yielding, "")
+    if modes:
+        print_out("", _limits(case, modes if every else worst_of_each(case, modes)), "")
     if halved:
         print_out("± contains the slicing: at least the change by half the sub-layers, in the plane thrice")
 

@@ -20,7 +20,7 @@ from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.either_body import on_body
 from verification.problem.point_answers import BALL, Points
-from verification.problem.quantity import largest_strain, von_mises
+from verification.problem.quantity import largest_shear, largest_strain, von_mises
 from verification.sampling.largest_tension import Search
 from verification.study.friction_planes import (
     XX,
@@ -51,8 +51,8 @@ REACH, POINTS = 2.0, 401  # of a course, over a
 class Extreme:
     """The largest ``quantity`` at one place of a ``body``: ``value`` +- ``uncertainty`` [Pa] at x, z [m].
 
-    quantity : sigma_xx, |sigma_xz|, sigma_zz, sigma_1, von_mises, or strain, the largest principal one in
-    magnitude, which has no unit.   where : "surface", "base of coating 1",
+    quantity : sigma_xx, |sigma_xz|, sigma_zz, sigma_1, von_mises, tau_max (half of Tresca's stress); strain,
+    the largest principal one in magnitude, which has no unit.   where : "surface", "base of coating 1",
     "top of substrate", "interface 1", "coating 1" and the like.   x : along the sliding of the ball over the
     flat; NaN with value 0 where a tensile stress is nowhere positive, in a layer without residual stress.
     z : into the body.
@@ -180,7 +180,8 @@ class _Layers:
         """Each measure of the stress of a ``layer``, with its residual stress."""
         E, nu = (*self.problem.coatings, self.problem.substrate)[layer][:2]
         strain = partial(largest_strain, E=E, nu=nu)
-        of: dict[str, Measure] = {"sigma_1": first_principal, "von_mises": von_mises, "strain": strain}
+        of: dict[str, Measure] = {"sigma_1": first_principal, "von_mises": von_mises}
+        of |= {"tau_max": largest_shear, "strain": strain}
         return {quantity: self._total(measure, layer) for quantity, measure in of.items()}
 
     def _graded(self, quantity: str, layers: range) -> Located:

@@ -1,15 +1,20 @@
 """A problem in words of the command line as the text of a case file.
 
 ball "10 mm" or "10 mm, 210 GPa, 0.3" (radius; of an elastic ball E, nu), coating "3 um, 450 GPa, 0.22"
-(thickness, E, nu), substrate "210 GPa, 0.3"; bare numbers are SI. "d = 20 mm" is a diameter, and a name may
+(thickness, E, nu), substrate "210 GPa, 0.3"; bare numbers are SI. Strengths and residual stress may follow:
+"TiN 2 um, 450 GPa, 0.25, strength 2 GPa, residual -1.5 GPa". "d = 20 mm" is a diameter, and a name may
 come first: "DLC 3 um, 450 GPa, 0.22", "M2 HSS 60 HRC 220 GPa, 0.3", "100Cr6 d = 6 mm, 210 GPa, 0.3". The
 reader of case files checks the numbers: both have the same limits, units, messages.
 """
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from difflib import get_close_matches
+from functools import partial
+from pathlib import Path
 
+from verification.cases.materials import SHIPPED, plain_name, read_materials
 from verification.cases.unit_numbers import NUMBER
 
 _D, _R = r"d|D|dia\.?|diam\.?|diameter|Ø|ø|⌀", r"r|R|radius"
@@ -19,7 +24,25 @@ _SIZED = re.compile(rf"({_D}|{_R})?\s*=?\s*({_VALUE}?)(?:\s+({_D}|{_R}))?")
 _NAMED = re.compile(rf"(.*?\S)[\s:]+({_SIZE})")
 # A name does not begin with a number, but for that of a steel, 1.3505; nor does it hold a size.
 _NO_NAME = re.compile(rf"(?!1\.\d{{4}}\b)[+-]?[\d.,]+(?:\s|$)|.*\b{NUMBER} ?(?:[numk]?m|µm|[kMGT]?Pa)\b")
+_REPEATED = re.compile(r"(\d{1,3})\s*[x*×]\s*\((.*)\)", re.DOTALL)
 _COMMA = re.compile(r"\d,\d")
+# What may be stated of a layer behind its numbers, with the keys of a case file.
+_KEYS = {
+    "strength": "strength",
+    "tensile strength": "strength",
+    "residual": "residual_stress",
+    "residual stress": "residual_stress",
+    "yield": "yield_strength",
+    "yield strength": "yield_strength",
+    "adhesion": "adhesion",
+    "hardness": "hardness",
+    "expansion": "expansion",
+}
+_STATED = re.compile(
+    rf"({'|'.join(sorted(_KEYS, key=len, reverse=True))})\s*[=:]?\s*([-+\d.].*)", re.IGNORECASE
+)
+STATED = '"strength 2 GPa", "residual -1.5 GPa", "yield 3 GPa", "adhesion 400 MPa"'
+Solid = Callable[[str, str], tuple[str, list[str]]]
 FORMS = {
     "--ball": ("radius", "E", "nu", "100Cr6 d = 6 mm, 210 GPa, 0.3"),
     "--coating": ("thickness", "E", "nu", "DLC 3 um, 450 GPa, 0.22"),
@@ -36,28 +59,32 @@ def case_text(
     friction: float = 0.0,
     on_ball: Sequence[str] = (),
     approach: str | None = None,
+    materials: Path = SHIPPED,
 ) -> str:
     """The case file of a problem in words; coatings from the surface of each body inwards.
 
-    approach : in place of the load, which then is None.
-
+    approach : in place of the load, which then is None.   materials : the file of those given by name alone.
     Raises ValueError where the number of words is wrong, naming the option.
     """
-    coated, elastic = ", ".join(_coating("--ball-coating", text) for text in on_ball), ""
+    used: dict[str, str] = {}
+    solid = partial(_solid, materials=materials, used=used)
+    coated, elastic = ", ".join(_layers("--ball-coating", text, solid) for text in on_ball), ""
     key, size = _size(ball)
     if "," in ball or on_ball or _named(ball.strip())[0]:
-        called, (size, *solid) = _solid("--ball", ball)
-        E, nu = map(_toml, solid)
+        called, (size, *words) = solid("--ball", ball)
+        E, nu = map(_toml, words)
         elastic = f"ball = {{ {called}E = {E}, nu = {nu}, coatings = [{coated}] }}\n"
         key, size = _size(size)
-    called, solid = _solid("--substrate", substrate)
-    E, nu = map(_toml, solid)
-    on = ", ".join(_coating("--coating", text) for text in coatings)
+    called, words = solid("--substrate", substrate)
+    E, nu = map(_toml, words)
+    on = ", ".join(_layers("--coating", text, solid) for text in coatings)
     pressed = "".join(
         f"{key} = {_toml(word)}\n" for key, word in (("load", load), ("approach", approach)) if word
     )
+    told = f"typical values: {'; '.join(used.values())}"[:500]
+    source = f"source = {json.dumps(told, ensure_ascii=False)}\n" if used else ""
     return (
-        'title = "From the command line"\n[problem]\n'
+        f'title = "From the command line"\n{source}[problem]\n'
         f"{key} = {_toml(size)}\n{pressed}friction = {friction!r}\n"
         f"substrate = {{ {called}E = {E}, nu = {nu} }}\n{elastic}coatings = [{on}]\n"
     )
@@ -79,26 +106,52 @@ def _named(word: str) -> tuple[str, str]:
     return (name, found[2]) if found and not _NO_NAME.match(name) else ("", word)
 
 
-def _coating(option: str, text: str) -> str:
-    called, solid = _solid(option, text)
-    thickness, E, nu = map(_toml, solid)
+def _layers(option: str, text: str, solid: Solid) -> str:
+    """A coating, or several that repeat: "10 x (TiN 100 nm, 450 GPa, 0.25 / CrN 100 nm, 250 GPa, 0.22)"."""
+    found = _REPEATED.fullmatch(text.strip())
+    if found is None:
+        return _coating(option, text, solid)
+    stack = ", ".join(_coating(option, part, solid) for part in re.split(r"\s/\s", found[2]))
+    return f"{{ repeat = {found[1]}, stack = [{stack}] }}"
+
+
+def _coating(option: str, text: str, solid: Solid) -> str:
+    called, words = solid(option, text)
+    thickness, E, nu = map(_toml, words)
     return f"{{ {called}thickness = {thickness}, E = {E}, nu = {nu} }}"
 
 
-def _solid(option: str, text: str) -> tuple[str, list[str]]:
-    """The entry of a name, "" without, and the words between the commas."""
+def _solid(option: str, text: str, materials: Path, used: dict[str, str]) -> tuple[str, list[str]]:
+    """The entry of a name, "" without, and the words between the commas, E and nu of a known name among them.
+
+    used : what was taken from the file of ``materials``, in words.
+    """
     *names, example = FORMS[option]
-    words = [word.strip() for word in text.split(",")]
+    every = [word.strip() for word in text.split(",")]
+    more = [found for word in every[1:] if (found := _STATED.fullmatch(word))]
+    words = [word for word in every if not _STATED.fullmatch(word)] or every
+    stated = "".join(f"{_KEYS[found[1].casefold()]} = {_toml(found[2])}, " for found in more)
     name, words[0] = _named(words[0])
     if not name and len(words) == len(names) + 1 and not re.match(NUMBER + r"(?!\w)", words[0]):
         name = words.pop(0).rstrip(":")
+    unknown = ""
+    if len(words) == 1 and (name or len(names) == 2):
+        name = f"{name} {words.pop()}".strip() if len(names) == 2 else name
+        known = read_materials(materials)
+        if (material := known.get(plain_name(name))) is None:
+            near = get_close_matches(plain_name(name), known, n=2)
+            hint = f"; did you mean {' or '.join(known[one].name for one in near)}?" if near else ""
+            unknown = f"; {name!r} is not among those of coatcheck materials{hint}"
+        else:
+            used[name] = material.told
+            words += [repr(float(material.E)), repr(material.nu)]
     if len(words) != len(names):
         form = f'give {", ".join(names)}, {len(names)} parts, such as "{example}"'
         comma = "; write decimals with a point, such as 0.3" if _COMMA.search(text) else ""
-        more = "" if comma or len(words) < 4 else "; a residual stress goes into a case file"
-        raise ValueError(f'{option} "{text}": {form}{comma}{more}')
+        named = "" if comma or len(words) < 4 else f"; name what else is stated, such as {STATED}"
+        raise ValueError(f'{option} "{text}": {form}{comma}{named}{unknown}')
     called = f"name = {json.dumps(name, ensure_ascii=False)}, " if name else ""
-    return called, words
+    return called + stated, words
 
 
 def _toml(word: str) -> str:

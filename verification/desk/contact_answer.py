@@ -4,6 +4,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import isnan
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,6 @@ import numpy as np
 from verification.desk.answer_stresses import Extreme, StressCourse, stresses
 from verification.desk.stack_text import units_of
 from verification.problem.coated_contact import CoatedContact
-from verification.problem.display_units import Units
 from verification.problem.point_answers import FLAT
 from verification.problem.quantity import SCALARS
 from verification.running.slicing import sliced
@@ -107,18 +107,19 @@ def usual_seconds(problem: CoatedContact) -> float:
     return BODY_SECONDS * len(problem.bodies) + FILM_SECONDS * sum(thin)
 
 
-ON_AXIS = 5e-3  # of a place from the axis, over a
+ON_AXIS = 5e-3  # of a place from the axis, over a_h
 
 
 def summary(problem: CoatedContact, found: ContactAnswer, names: Names) -> str:
-    """Where both bodies are pulled and yield the most, and the interfaces are sheared, in three digits.
+    """Where both bodies are pulled, sheared and yield the most, in three digits.
 
     The largest tension of a coating comes first, then that of all where it is elsewhere; then the largest
-    sigma_xx at the base of a coating, which cracks from there too.  names : of the coatings, see ``Case``.
+    sigma_xx at the base of a coating, which cracks from there too, and the interface that is sheared most.
+    names : of the coatings, see ``Case``.
     """
-    a, sliding, units = found.numbers["contact_radius"][0], problem.friction > 0, units_of(problem)
+    sliding, units = problem.friction > 0, units_of(problem)
     (largest, *_), coatings = _ranked(found, "sigma_1"), _ranked(found, "sigma_1", "coating")
-    bases, (von_mises, *_) = _ranked(found, "sigma_xx", "base of"), _ranked(found, "von_mises")
+    bases, interfaces = _ranked(found, "sigma_xx", "base of"), _ranked(found, "|sigma_xz|")
 
     def stress(at: Extreme) -> str:
         return f"{_three_digits(at.value / units.pascal)} {units.stress}"
@@ -130,25 +131,32 @@ def summary(problem: CoatedContact, found: ContactAnswer, names: Names) -> str:
         coated = bool(problem.seen_from(at.body).coatings)
         return f"{where} of the {at.body}" if coated else f"the {at.body}"
 
-    def said(at: Extreme) -> str:
-        return f"{stress(at)} in {name(at)}, {_place(at, a, units, sliding=sliding)}"
-
     pulled = [at for at in (*coatings[:1], largest) if at.value > 0]
-    parts = [f"Largest tension {said(largest)}"] if pulled else ["No tension"]
-    if pulled and pulled[0] is not largest:
-        parts = [f"Largest tension of the coatings {said(pulled[0])}", f"of all {said(largest)}"]
-    parts += [f"{stress(at)} at the {name(at)}" for at in bases[:1] if at.value > 0]
-    parts += [f"{name(at)} sheared by {stress(at)}" for at in found.extremes if at.quantity == "|sigma_xz|"]
-    parts.append(f"von Mises stress up to {stress(von_mises)} in {name(von_mises)}")
-    return f"{'; '.join(parts)}."
+    said = ["No tension."]
+    if pulled:
+        of = "Largest tension in the coatings" if coatings else "Largest tension"
+        first = pulled[0]
+        said = [f"{of}: {stress(first)}, in {name(first)} {place_of(first, problem, sliding)}."]
+        if first is not largest:
+            said.append(f"Largest anywhere: {stress(largest)}, in {name(largest)}.")
+    said += [f"At the {name(at)}: {stress(at)} of tension." for at in bases[:1] if at.value > 0]
+    said += [f"Largest shear of an interface: {stress(at)}, at {name(at)}." for at in interfaces[:1]]
+    for quantity, of in (("von_mises", "von Mises stress"), ("tau_max", "shear stress")):
+        if ranked := _ranked(found, quantity):
+            at = ranked[0]
+            where = f"in {name(at)} {place_of(at, problem, sliding)}"
+            said.append(f"Largest {of}: {stress(at)}, {where}.")
+    return " ".join(said)
 
 
 def with_name(body: str, where: str, names: Names) -> str:
-    """A place with the name of its coating: "base of coating 1 (DLC)"."""
-    for number, given in enumerate(names.get(body, ())[:-1], start=1):
-        if given and where.endswith(f"coating {number}"):
-            return f"{where} ({given})"
-    return where
+    """A place with the names of its coating, or of what an interface joins: "base of coating 1 (DLC)"."""
+    own = names.get(body, ())
+    kind, _, number = where.rpartition(" ")
+    if kind.endswith("interface") and all(own[int(number) - 1 : int(number) + 1]) and own:
+        return f"{where} ({' / '.join(own[int(number) - 1 : int(number) + 1])})"
+    named = kind.endswith("coating") and int(number) < len(own) and own[int(number) - 1]
+    return f"{where} ({named})" if named else where
 
 
 def agreement(first: ContactAnswer, apart: tuple[AnswerDifference, ...]) -> str:
@@ -179,12 +187,15 @@ def _three_digits(value: float) -> str:
     return np.format_float_positional(value, precision=3, fractional=False, trim="-")
 
 
-def _place(at: Extreme, a: float, units: Units, *, sliding: bool) -> str:
+def place_of(at: Any, problem: CoatedContact, sliding: bool) -> str:
+    """The place ``x``, ``z`` of a stress in words: "at its surface, 110 um behind the axis"."""
+    units = units_of(problem)
+
     def length(value: float) -> str:
         return f"{_three_digits(value / units.metre)} {units.length}"
 
     depth = "at its surface" if at.z == 0 else f"at z = {length(at.z)}"
-    if abs(at.x) < ON_AXIS * a:
+    if isnan(at.x) or abs(at.x) < ON_AXIS * problem.a_h:
         return f"{depth} on the axis"
     side = ("behind" if at.x < 0 else "ahead of") if sliding else "from"
     return f"{depth}, {length(abs(at.x))} {side} the axis"

@@ -1,10 +1,15 @@
-"""Limits of each layer: its strain, how near it is to yielding, the load at which it begins to yield.
+"""Verdict on a contact: how near each layer and interface is to failing, and the load at which it begins to.
 
-Yielding is judged by the largest von Mises stress of the layer, its residual stress included. Under a rising
-load that stress never falls: it is the maximum of a convex function of the contact stress, least at no load.
+    yields      largest von Mises stress of a layer          against its yield strength
+    cracks      largest first principal stress of a layer    against its strength
+    shears off  largest |sigma_xz| of an interface           against its adhesion
+    lifts off   largest tension sigma_zz of an interface     against its adhesion
+
+Residual stress is included. The load at which a stress reaches its strength is found by solving at other
+loads, each of which serves every mode.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import exp, log
 from typing import Any
@@ -12,67 +17,87 @@ from typing import Any
 from verification.cases.case_file import Case
 from verification.cases.plausibility import as_stress, beyond_limits, strain_warning
 from verification.desk.answer_stresses import Extreme
-from verification.desk.contact_answer import ContactAnswer, answer, summary, with_name
+from verification.desk.contact_answer import ContactAnswer, answer, place_of, summary, with_name
 from verification.desk.stack_text import body_label
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.point_answers import BALL, FLAT
 
 NEAR = 2e-3  # of the strength: a load as near as this is found, and interpolated from there
-MOST_SOLVES, FARTHEST = 8, 1e4  # of one layer; factor of the load between two of them
+MOST_SOLVES, FARTHEST = 8, 1e4  # of one mode; factor of the load between two of them
+UNUSUAL = (
+    0.03  # von Mises stress over the modulus, which few materials bear; hardened steels yield below 0.015
+)
+# What each stress does, by which strength it is judged, and its own name.
+MODES = {
+    "von_mises": ("yields", "yield_strength", "von Mises stress"),
+    "sigma_1": ("cracks", "strength", "first principal stress"),
+    "|sigma_xz|": ("shears off", "adhesion", "shear stress"),
+    "sigma_zz": ("lifts off", "adhesion", "tension"),
+}
 
-Strengths = Mapping[tuple[str, str], float]  # yield strength [Pa] by body and layer
+Place = tuple[str, str, str]  # body, where, quantity, as of ``Extreme``
 
 
 @dataclass(frozen=True)
-class LayerLimit:
-    """One layer: ``strain``, the largest principal one in magnitude, and ``von_mises`` [Pa] of an answer.
+class LayerMode:
+    """One way to fail: the largest ``stress`` [Pa] of its quantity at a place, and the ``strength`` there.
 
-    body, where : as of ``Extreme``.   yield_strength [Pa] : None where none is given.
-    yields_from : the load [N] at which the layer begins to yield, 0 where its residual stress alone is
-    enough, None where it is not known.
+    body, where, quantity : as of ``Extreme``.   load : at which they are equal [N], 0 where the residual
+    stress alone is enough, None where it was not found.   x, z : place of the stress at about that load [m].
     """
 
     body: str
     where: str
-    strain: float
-    von_mises: float
-    yield_strength: float | None = None
-    yields_from: float | None = None
+    quantity: str
+    stress: float
+    strength: float
+    load: float | None
+    x: float
+    z: float
 
     @property
-    def utilisation(self) -> float | None:
-        """The von Mises stress over the yield strength."""
-        return None if self.yield_strength is None else self.von_mises / self.yield_strength
+    def utilisation(self) -> float:
+        """The stress over its strength."""
+        return self.stress / self.strength
 
-    def warnings(self, name: str) -> tuple[str, ...]:
-        """A line for a layer, called ``name``, that yields; another for one whose strain is not small."""
-        found = strain_warning(name, self.strain)
-        if self.yield_strength is not None and self.von_mises > self.yield_strength:
-            text = f"{name} yields: its von Mises stress {as_stress(self.von_mises)} is "
-            text += f"{self.utilisation:.3g} times its yield strength {as_stress(self.yield_strength)}"
-            return (f"{text}; {self.begins}", *found)
-        return found
+    @property
+    def safety(self) -> float:
+        """The strength over the stress; infinite where there is none."""
+        return self.strength / self.stress if self.stress > 0 else float("inf")
+
+    @property
+    def of(self) -> str:
+        """The strength in words."""
+        return MODES[self.quantity][1].replace("_", " ")
 
     @property
     def begins(self) -> str:
-        """The load at which it begins to yield, in words."""
-        if self.yields_from is None:
-            return "the load at which it begins to yield was not found"
-        if self.yields_from == 0:
-            return "its residual stress alone makes it yield"
-        return f"it begins to yield at {self.yields_from:.3g} N"
+        """The load at which it begins to fail, in words."""
+        if self.load is None:
+            return "the load at which it begins was not found"
+        return f"from {self.load:.3g} N" if self.load else "its residual stress alone is enough"
+
+    def warnings(self, name: str) -> tuple[str, ...]:
+        """A line where the place, called ``name``, fails."""
+        if self.utilisation <= 1:
+            return ()
+        does, _, stress = MODES[self.quantity]
+        return (
+            f"{name} {does}: its {stress} {as_stress(self.stress)} is {self.utilisation:.3g} times its "
+            f"{self.of} {as_stress(self.strength)}; {self.begins}",
+        )
 
 
 @dataclass(frozen=True)
 class Designed:
-    """Largest stresses of a case with what it states beside its problem: residual stresses, limits of layers.
+    """Largest stresses of a case with what it states beside its problem: residual stresses, strengths.
 
     summary : in words.   warnings : a line for each limit that is exceeded.
     """
 
     summary: str
     extremes: tuple[Extreme, ...] = ()
-    limits: tuple[LayerLimit, ...] = ()
+    limits: tuple[LayerMode, ...] = ()
     warnings: tuple[str, ...] = ()
 
 
@@ -84,112 +109,166 @@ def designed(case: Case, source: str) -> Designed | None:
     if not (case.residual or case.limits):
         return None
     if case.problem.indenter is not None:
-        return Designed("Largest stresses with residual stress, and yielding, are found under balls alone.")
-    state: dict[str, Any] = {"residual": case.residual, "layers": case.layers}
-    first = answer(case.problem, source, case.numerics.get(source), **state)
-    strengths = yield_strengths(case.limits)
-    limits = layer_limits(case.problem, first, strengths, case.numerics.get(source), **state)
-    told = [line for one in limits for line in one.warnings(layer_name(case, one)) if " yields: " in line]
+        return Designed("Largest stresses with residual stress, and strengths, are found under balls alone.")
+    numerics = case.numerics.get(source)
+    first = answer(case.problem, source, numerics, case.residual, case.layers)
+    modes = layer_modes(case.problem, first, strengths_of(case.limits), numerics, case.residual, case.layers)
+    told = [line for one in modes for line in one.warnings(place_name(case, one))]
     told += beyond_limits(first.numbers["peak_pressure"][0], case.limits)
-    return Designed(summary(case.problem, first, case.names), first.extremes, limits, tuple(told))
+    said = " ".join(filter(None, (summary(case.problem, first, case.names), verdict(case, modes))))
+    return Designed(said, first.extremes, modes, tuple(told))
 
 
-def layer_name(case: Case, layer: LayerLimit) -> str:
-    """The name of a layer with that of its body and its own."""
-    return body_label(case.problem, layer.body, with_name(layer.body, layer.where, case.names))
+def place_name(case: Case, at: LayerMode | Extreme) -> str:
+    """A layer or interface with the name of its body and its own."""
+    return body_label(case.problem, at.body, with_name(at.body, at.where, case.names))
 
 
-def yield_strengths(limits: Mapping[str, float]) -> Strengths:
-    """Yield strengths [Pa] by body and layer; ``limits`` by the keys of a case file, see ``Case``."""
+def strengths_of(limits: Mapping[str, float]) -> dict[Place, float]:
+    """Strength [Pa] of each mode by its place; ``limits`` by the keys of a case file, see ``Case``."""
     found = {}
     for key, value in limits.items():
         *path, name = key.split(".")
-        if name == "yield_strength":
-            layer = f"coating {int(path[-1]) + 1}" if "coatings" in path else "substrate"
-            found[BALL if BALL in path else FLAT, layer] = value
+        body = BALL if BALL in path else FLAT
+        number = int(path[-1]) + 1 if "coatings" in path else 0
+        layer = f"coating {number}" if number else "substrate"
+        for quantity, (_, of, _) in MODES.items():
+            if of == name:
+                found[body, f"interface {number}" if of == "adhesion" else layer, quantity] = value
     return found
 
 
-def layer_limits(
+def verdict(case: Case, modes: tuple[LayerMode, ...]) -> str:
+    """Whether everything holds, what is nearest to failing, the loads at which it begins; "" without any."""
+    if not modes:
+        return ""
+    worst, sliding = max(modes, key=lambda one: one.utilisation), case.problem.friction > 0
+
+    def which(one: LayerMode) -> str:
+        return f"{place_name(case, one)} {MODES[one.quantity][0]}"
+
+    share = f"{100 * worst.utilisation:.3g} % of the {worst.of}"
+    margin = f"safety factor {worst.safety:.3g}" if worst.stress > 0 else "no stress at all"
+    failing = [one for one in modes if one.utilisation > 1]
+    said = [f"Verdict: {', '.join(map(which, failing[:3]))}{', ...' if len(failing) > 3 else ''}."]
+    if not failing:
+        said = ["Verdict: holds."]
+    if worst.stress > 0:
+        said.append(f"Nearest to its limit: {which(worst)} ({share}, {margin}).")
+    for word, some in (("yield", [one for one in modes if one.quantity == "von_mises"]), ("failure", modes)):
+        loads = [(one.load, one) for one in some if one.load is not None]
+        if loads:
+            load, first = min(loads, key=lambda pair: pair[0])
+            at = f"at {load:.3g} N" if load else "without any load"
+            place = f", {place_of(first, case.problem, sliding)}" if load else ""
+            said.append(f"First {word} {at}: {which(first)}{place}.")
+    return " ".join(said)
+
+
+def unusual(case: Case, found: ContactAnswer) -> tuple[str, ...]:
+    """A line for each layer without a yield strength whose von Mises stress hardly any material bears."""
+    known, lines = strengths_of(case.limits), []
+    for at in found.extremes:
+        if at.quantity != "von_mises" or (at.body, at.where, at.quantity) in known:
+            continue
+        seen = case.problem.seen_from(at.body)
+        layers = case.layers.get(at.body) or (1,) * len(seen.coatings)
+        number = int(at.where.split()[-1]) - 1 if at.where.startswith("coating") else len(layers)
+        E = (*seen.coatings, seen.substrate)[sum(layers[:number])][0]
+        if at.value > UNUSUAL * E:
+            lines.append(
+                f"the von Mises stress of {place_name(case, at)}, {as_stress(at.value)}, is "
+                f"{100 * at.value / E:.2g} % of its modulus, which few materials bear (hardened steels yield "
+                "below 1.5 %); give its yield strength for a verdict"
+            )
+    return tuple(lines)
+
+
+def strain_warnings(case: Case, found: ContactAnswer) -> list[str]:
+    """A line for each layer whose strain is not small."""
+    return [line for at in found.strains for line in strain_warning(place_name(case, at), at.value)]
+
+
+def layer_modes(
     problem: CoatedContact,
     first: ContactAnswer,
-    strengths: Strengths,
+    strengths: Mapping[Place, float],
     numerics: Mapping[str, Any] | None = None,
     residual: Mapping[str, tuple[float, ...]] | None = None,
     layers: Mapping[str, tuple[int, ...]] | None = None,
-) -> tuple[LayerLimit, ...]:
-    """The limits of every layer of ``first``, the answer to ``problem``, in the order of its layers.
+    *,
+    loads: bool = True,
+) -> tuple[LayerMode, ...]:
+    """Every mode of ``first``, the answer to ``problem``, that has one of ``strengths``.
 
-    numerics, residual, layers : as of ``answer``, which solves other loads where there are ``strengths``.
+    numerics, residual, layers : as of ``answer``, which solves other loads.   loads : whether it does.
     """
     fast = {**(numerics or {}), "estimate_uncertainty": False}
-    known = {problem.load: _von_mises(first)}
+    known = {problem.load: _by_place(first)}
 
-    def at(load: float) -> Mapping[tuple[str, str], float]:
+    def stress_at(load: float) -> dict[Place, Extreme]:
         if load not in known:
             there = replace(problem, load=load)
-            known[load] = _von_mises(answer(there, first.source, fast, residual, layers))
+            known[load] = _by_place(answer(there, first.source, fast, residual, layers))
         return known[load]
 
-    stressed = _residual_by_layer(residual or {}, layers or {})
-    found = []
-    for one in first.strains:
-        place = one.body, one.where
-        strength, begins = strengths.get(place), None
-        if strength is not None:
-            begins = _yields_from(
-                lambda load, place=place, strength=strength: at(load)[place] / strength,  # type: ignore[misc]
-                problem.load,
-                stressed.get(place, 0.0) / strength,
-            )
-        found.append(LayerLimit(*place, one.value, known[problem.load][place], strength, begins))
+    rest, found = _at_rest(residual or {}, layers or {}), []
+    for place, at in known[problem.load].items():
+        if (strength := strengths.get(place)) is None:
+            continue
+
+        def use(load: float, place: Place = place, strength: float = strength) -> float:
+            return max(stress_at(load)[place].value / strength, 1e-6)
+
+        load = _load_of(use, known, rest.get(place, 0.0) / strength) if loads else None
+        nearest = min(known, key=lambda one: abs(log(one / (load or problem.load))))
+        there = known[nearest][place]
+        found.append(LayerMode(*place, at.value, strength, load, there.x, there.z))
     return tuple(found)
 
 
-def _von_mises(found: ContactAnswer) -> dict[tuple[str, str], float]:
-    return {(at.body, at.where): at.value for at in found.extremes if at.quantity == "von_mises"}
+def _by_place(found: ContactAnswer) -> dict[Place, Extreme]:
+    return {(at.body, at.where, at.quantity): at for at in found.extremes}
 
 
-def _residual_by_layer(
+def _at_rest(
     residual: Mapping[str, tuple[float, ...]], layers: Mapping[str, tuple[int, ...]]
-) -> dict[tuple[str, str], float]:
-    """The largest magnitude of the residual stress of each coating [Pa], its von Mises stress at no load."""
+) -> dict[Place, float]:
+    """The stresses of each coating at no load [Pa]: its residual stress, of the worst of its sub-layers."""
     found = {}
     for body, stresses in residual.items():
         begin = 0
         for i, n in enumerate(layers.get(body) or (1,) * len(stresses), start=1):
-            found[body, f"coating {i}"] = max(map(abs, stresses[begin : begin + n]))
+            own = stresses[begin : begin + n]
+            found[body, f"coating {i}", "von_mises"] = max(map(abs, own))
+            found[body, f"coating {i}", "sigma_1"] = max(0.0, *own)
             begin += n
     return found
 
 
-def _yields_from(use: Callable[[float], float], load: float, at_rest: float) -> float | None:
+def _load_of(use: Callable[[float], float], known: Mapping[float, Any], at_rest: float) -> float | None:
     """The load at which ``use``, the stress over its strength, is 1: by secants of its logarithm.
 
-    load : where the search begins.   at_rest : the same at no load.
+    known : loads that are solved, of which the nearest two are used first.   at_rest : the same at no load.
     None where it is not found, as where no contact of such a load is solved.
     """
     if at_rest >= 1:
         return 0.0
     try:
-        points = [(load, use(load))]
-        # The contact stress of Hertz grows as the cubic root of the load.
-        above = max(points[0][1] - at_rest, 1e-3 * (1 - at_rest))
-        step = 3 * log((1 - at_rest) / above)
         for _ in range(MOST_SOLVES):
-            if abs(points[-1][1] - 1) < NEAR:
-                return points[-1][0] * exp(step)
-            following = points[-1][0] * exp(max(min(step, log(FARTHEST)), -log(FARTHEST)))
-            points.append((following, use(following)))
-            step = _secant(points)
+            (load, nearest), *others = sorted(
+                ((one, use(one)) for one in known), key=lambda pair: abs(log(pair[1]))
+            )
+            # The contact stress of Hertz grows as the cubic root of the load.
+            step = 3 * log((1 - at_rest) / max(nearest - at_rest, 1e-3 * (1 - at_rest)))
+            if others:
+                before, second = others[0]
+                slope = log(nearest / second) / log(load / before)
+                # Where the residual stress outweighs that of the contact the load has no part yet.
+                step = -log(nearest) / slope if slope > 1e-3 else (log(8) if nearest < 1 else -log(8))
+            if abs(nearest - 1) < NEAR:
+                return float(load * exp(step))
+            use(float(load * exp(max(min(step, log(FARTHEST)), -log(FARTHEST)))))
     except (ValueError, ArithmeticError):
         pass
     return None
-
-
-def _secant(points: Sequence[tuple[float, float]]) -> float:
-    """The next step of the logarithm of the load."""
-    (before, first), (load, second) = points[-2:]
-    slope = log(second / first) / log(load / before) if load != before else 0.0
-    # Where the residual stress outweighs that of the contact the load has no part yet.
-    return -log(second) / slope if slope > 1e-3 else (log(8) if second < 1 else -log(8))

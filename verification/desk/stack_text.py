@@ -1,6 +1,6 @@
 """A contact in words: the stack in one line, each body and coating in a line of its own."""
 
-from itertools import accumulate, pairwise
+from itertools import accumulate, pairwise, product
 
 from verification.cases.case_file import Case
 from verification.cases.drawn_ranges import (
@@ -27,9 +27,20 @@ def stack(case: Case) -> str:
     if problem.ball:
         found += reversed(_layers(case, BALL))
     base = case.names.get(FLAT, ("",))[-1]
-    return " / ".join(
-        [*found, *_layers(case, FLAT), base or f"substrate {prefixed(problem.substrate[0], 'Pa')}"]
-    )
+    base = base or f"substrate {prefixed(problem.substrate[0], 'Pa')}"
+    return " / ".join(_repeats([*found, *_layers(case, FLAT), base]))
+
+
+def _repeats(words: list[str]) -> list[str]:
+    """``words`` with what recurs three times or more in a row said once: "10 x (TiN 1 um / CrN 1 um)"."""
+    for begin, period in product(range(len(words)), range(1, 5)):
+        part, count = words[begin : begin + period], 1
+        while words[begin + count * period : begin + (count + 1) * period] == part:
+            count += 1
+        if count >= 3:
+            said = f"{count} x ({' / '.join(part)})"
+            return [*words[:begin], said, *_repeats(words[begin + count * period :])]
+    return words
 
 
 def _layers(case: Case, body: str) -> list[str]:
@@ -42,8 +53,8 @@ def _layers(case: Case, body: str) -> list[str]:
     return found
 
 
-def described(case: Case) -> list[str]:
-    """The problem, a line for each body, load and coating."""
+def described(case: Case, *, every: bool = True) -> list[str]:
+    """The problem, a line for each body, load and coating; of equal coatings the first, unless ``every``."""
     problem, units = case.problem, units_of(case.problem)
     kind = "rigid" if problem.ball is None else _solid(*problem.ball[:2])
     size = f"R = {prefixed(problem.radius, 'm')} (diameter {prefixed(2 * problem.radius, 'm')}), {kind}"
@@ -52,6 +63,7 @@ def described(case: Case) -> list[str]:
         lines.append(
             f"            W is the load of the given approach of {units.shown_length(case.approach)}"
         )
+    told: dict[str, set[str]] = {body: set() for body in problem.bodies}
     for body in problem.bodies:
         seen, names, begin = problem.seen_from(body), case.names.get(body, ()), 0
         for i, layers in enumerate(_coatings(seen, case.layers.get(body)), start=1):
@@ -63,11 +75,16 @@ def described(case: Case) -> list[str]:
             ends = _range(stress[0] / units.pascal, stress[-1] / units.pascal)
             more = f", residual stress {ends} {units.stress}" if any(stress) else ""
             thickness = _thickness(layers, names[i - 1] if names else "", units)
-            lines.append(f"{on} {i}   "[:12] + f"{thickness}, {solid}{more}")
+            text = f"{thickness}, {solid}{more}"
             begin += n
+            if every or text not in told[body]:
+                lines.append(f"{on} {i}   "[:12] + text)
+            elif not lines[-1].endswith("repeated"):
+                lines.append("            repeated")
+            told[body].add(text)
         if body == FLAT:
             lines.append(f"substrate   {_solid(*seen.substrate)}")
-    return [*lines, *(f"remark      {line}" for line in case.remarks)]
+    return lines
 
 
 def conditions(problem: CoatedContact) -> str:

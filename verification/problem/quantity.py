@@ -148,12 +148,23 @@ def von_mises(sigma: Array | Sequence[Array]) -> Array:
     return np.sqrt(square)
 
 
+def largest_shear(sigma: Array | Sequence[Array]) -> Array:
+    """Largest shear stress [Pa], half of Tresca's, from the stresses xx, yy, zz, xz of the plane y = 0."""
+    principal = _principal(sigma)
+    return (principal.max(axis=0) - principal.min(axis=0)) / 2
+
+
+def _principal(sigma: Array | Sequence[Array]) -> Array:
+    """The principal stresses in the plane of symmetry y = 0, (3, ...), in no order."""
+    xx, yy, zz, xz = sigma
+    middle, radius = (xx + zz) / 2, np.hypot((xx - zz) / 2, xz)
+    return np.stack([middle + radius, middle - radius, yy])
+
+
 def largest_strain(sigma: Array | Sequence[Array], E: float, nu: float) -> Array:
     """Largest principal strain in magnitude, from the stresses xx, yy, zz, xz of the plane y = 0, (4, ...).
 
     e_i = ((1 + nu) s_i - nu (s_1 + s_2 + s_3)) / E, s_i the principal stresses
     """
-    xx, yy, zz, xz = sigma
-    middle, radius = (xx + zz) / 2, np.hypot((xx - zz) / 2, xz)
-    principal = np.stack([middle + radius, middle - radius, yy])
-    return np.abs(((1 + nu) * principal - nu * (xx + yy + zz)) / E).max(axis=0)
+    principal = _principal(sigma)
+    return np.abs(((1 + nu) * principal - nu * principal.sum(axis=0)) / E).max(axis=0)

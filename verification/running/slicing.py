@@ -20,6 +20,7 @@ from verification.sources.source_record import Solver
 from verification.sources.source_registry import METHODS
 
 METHOD = METHODS[0]
+IN_PLANE = ("sigma_xx", "sigma_1", "von_mises", "tau_max")  # largest stresses that jump with the modulus
 FACTOR = 3.0  # of safety of a study of two grids. P. J. Roache, Annu. Rev. Fluid Mech. 29 (1997) 123-160
 REACH, POINTS = 2.0, 201  # of the samples along x, over a
 
@@ -30,7 +31,7 @@ def sliced(change: float, before: float = 0.0, key: tuple[str, ...] = ()) -> flo
     before : the change from that to a quarter of them.
     key : of a number by its name, or (body, quantity, where) of a largest stress.
     """
-    in_plane = key[1:2] in (("sigma_xx",), ("sigma_1",), ("von_mises",)) and "substrate" not in key[2]
+    in_plane = len(key) == 3 and key[1] in IN_PLANE and "substrate" not in key[2]
     ratio = 2 if in_plane else 4
     return FACTOR * max(abs(change), abs(before) / ratio) / (ratio - 1)
 

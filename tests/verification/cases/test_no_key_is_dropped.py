@@ -113,11 +113,13 @@ for solid, expansion in (
         f"problem.{solid}.name": ({}, '"A"', '"B"'),
         f"problem.{solid}.hardness": ({}, "1e7", "2e7"),
         f"problem.{solid}.yield_strength": ({}, "1e8", "2e8"),
+        f"problem.{solid}.strength": ({}, "1e8", "2e8"),
         f"problem.{solid}.E": ({}, "2.5e11", "2.6e11"),
         f"problem.{solid}.nu": ({}, "0.2", "0.21"),
         f"problem.{solid}.expansion": (expansion, "7e-6", "8e-6"),
     }
 for solid in ("coatings", "ball.coatings"):
+    KEYS[f"problem.{solid}.adhesion"] = ({}, "1e8", "2e8")
     KEYS[f"problem.{solid}.residual_stress"] = ({}, "-1e9", "-2e9")
     KEYS[f"problem.{solid}.thickness"] = ({}, "11e-6", "12e-6")
 COURSES = ("course", "top", "base", "depth", "E")
@@ -259,6 +261,7 @@ STACK = STUDY.replace("coating = {", "coatings = [{ nu = 0.2, E = 2e11, thicknes
         (STUDY, COATING, 'nu = 0.25, name = "TiN" }\nball', ""),
         (STUDY, COATING, 'nu = 0.25, hardness = "25 GPa" }\nball', ""),
         (STUDY, COATING, 'nu = 0.25, yield_strength = "9 GPa" }\nball', ""),
+        (STUDY, COATING, 'nu = 0.25, strength = "2 GPa" }\nball', "coating.strength"),
         (STUDY, COATING, 'nu = 0.25, residual_stress = "-1 GPa" }\nball', ""),
         (STUDY, COATING, "nu = 0.25, expansion = 9e-6 }\nball", "expansion"),
         (STUDY, "[sweep]", "temperature_change = -300\n[sweep]", "temperature_change"),

@@ -69,7 +69,12 @@ def test_json_holds_everything_and_the_figure_is_written(tmp_path):
     assert done.returncode == 0
     content = json.loads(done.stdout, parse_constant=lambda name: pytest.fail(name))
     assert content["answer"]["numbers"]["peak_pressure"][0] == pytest.approx(1272.6e6, rel=1e-4)
-    assert {e["quantity"] for e in content["answer"]["extremes"]} == {"sigma_xx", "sigma_1", "von_mises"}
+    assert {e["quantity"] for e in content["answer"]["extremes"]} == {
+        "sigma_xx",
+        "sigma_1",
+        "von_mises",
+        "tau_max",
+    }
     assert content["problem"]["friction"] == 0.25
     assert content["warnings"] == []
     assert content["check"] is None
@@ -102,7 +107,7 @@ def test_check_shows_the_differences_and_fails_beyond_both_uncertainties(tmp_pat
         done = coatcheck(*FAST, "--check", cwd=tmp_path)
         assert done.returncode == code
         assert re.search(r"p0 +MPa .* \+1\.3e-0[23]", done.stdout)
-        assert ("3 of 6" in " ".join(done.stdout.split())) == (code == 1)
+        assert ("3 of 7" in " ".join(done.stdout.split())) == (code == 1)
 
 
 def test_what_cannot_be_solved_is_no_result(tmp_path, monkeypatch):

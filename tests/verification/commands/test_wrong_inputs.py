@@ -33,12 +33,15 @@ WRONG = [
     ({"--load": "20 MN"}, "mN"),
     ({"--friction": "15%"}, "without %"),
     ({"--frction": "0.1"}, "--friction"),
-    ({"--ball": "100Cr6 6 mm"}, "100Cr6 d = 6 mm, 210 GPa, 0.3"),
+    ({"--ball": "steel 6 mm"}, "100Cr6 d = 6 mm, 210 GPa, 0.3"),
+    ({"--coating": "diamand 2 um"}, "did you mean diamond"),
     ({"--substrate": "steel"}, "100Cr6 210 GPa, 0.3"),
     ({"--substrate": "3 um 210 GPa, 0.3"}, "210 GPa"),
     ({"--coating": "a-C:H 3 um 150 GPa 0.25"}, "DLC 3 um, 450 GPa, 0.22"),
     ({"--coating": "180 GPa, 2 um, 0.2"}, "exchange"),
-    ({"--coating": "2 um, 180 GPa, 0.2, -2 GPa"}, "case file"),
+    ({"--coating": "2 um, 180 GPa, 0.2, -2 GPa"}, "residual -1.5 GPa"),
+    ({"--coating": "2 um, 180 GPa, 0.2, strength 2 um"}, "strength must be"),
+    ({"--coating": "0 x (2 um, 180 GPa, 0.2)"}, "repeat = 0"),
     ({"--coating": "1 500 nm, 180 GPa, 0.2"}, '"1500 nm"'),
     ({"--load": "1e9 N"}, "load"),
     ({"--ball": "10,5 mm, 210 GPa, 0,3"}, "point"),
@@ -164,6 +167,8 @@ def test_a_slip_in_a_file_is_one_message_as_a_person_would_say_it(old, new, mess
 
 
 NAMED = [
+    ("TiN 2 um, 450 GPa, 0.25, strength 2 GPa, residual -1.5 GPa", "coating", "TiN", 2e-6),
+    ("10 x (TiN 100 nm, 450 GPa, 0.25 / CrN 200 nm, 250 GPa, 0.22)", "coating", "TiN", 1e-7),
     ("100Cr6 d = 6 mm, 210 GPa, 0.3", "ball", "100Cr6", 3e-3),
     ("Si3N4 6 mm, 310 GPa, 0.27", "ball", "Si3N4", 6e-3),
     ("6 mm diameter, 210 GPa, 0.3", "ball", "", 3e-3),
@@ -185,7 +190,10 @@ def test_names_and_units_beside_numbers_are_understood(text, option, name, value
     given = {"ball": "7 mm", "substrate": "210 GPa, 0.3", "coating": "3 um, 180 GPa, 0.2"} | {option: text}
     words = case_text(given["ball"], "20 N", given["substrate"], [given["coating"]])
     case = parse_case(words.encode(), Path("options"))
-    contact, (layer,) = case.problem, case.problem.coatings
+    contact, layer = case.problem, case.problem.coatings[0]
+    assert len(contact.coatings) == (20 if "10 x" in text else 1)
+    assert case.limits == ({"coatings.0.strength": 2e9} if "strength" in text else {})
+    assert case.residual == ({"flat": (-1.5e9,)} if "residual" in text else {})
     found = {"ball": contact.radius, "substrate": contact.substrate[0], "coating": layer[2]}
     assert found[option] == pytest.approx(value, rel=1e-12)
     body, at = {"ball": ("ball", -1), "substrate": ("flat", -1), "coating": ("flat", 0)}[option]

@@ -46,6 +46,9 @@ def test_mismatch_of_expansion_is_that_of_a_thin_film():
     residual = parse(FILE).residual
     assert residual["flat"] == pytest.approx((180e9 / 0.8 * 10e-6 * -300, 150e6), rel=1e-14)
     assert residual["ball"] == (0.0,)
+    # of growth and of mismatch together
+    both = parse(FILE.replace("expansion = 2e-6", 'expansion = 2e-6\nresidual_stress = "-1 GPa"')).residual
+    assert both["flat"] == pytest.approx((residual["flat"][0] - 1e9, 150e6), rel=1e-14)
     # Hooke: biaxial stress with the strain of the substrate, free in z.
     E, nu, sigma = 180e9, 0.2, residual["flat"][0]
     assert (sigma - nu * sigma) / E + 2e-6 * -300 == pytest.approx(12e-6 * -300, rel=1e-12, abs=0)
@@ -106,7 +109,6 @@ def test_of_a_coated_ball_it_belongs_to_the_ball():
     [
         (", expansion = 12e-6", "", "coating 1"),
         ("temperature_change = -300\n", "", "coating 1"),
-        ('residual_stress = "150 MPa"', 'residual_stress = "150 MPa"\nexpansion = 1e-6', "residual_stress"),
         ('"150 MPa"', '"150 um"', "coating 2, residual_stress"),
         ("-300", '"-300 K"', "temperature_change"),
         ("expansion = 2e-6", "expansion = 2.0", "coating 1, expansion"),

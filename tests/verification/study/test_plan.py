@@ -29,7 +29,7 @@ def test_thicknesses_crowd_around_their_geometric_middle():
         ("load = 20.0", 'load = "heavy"', "load"),
         ("load = 20.0", "load = 1e12", "load"),
         ("nu = 0.25", "nu = 0.25, expansion = 1e-5", "coating"),
-        ("nu = 0.25", "nu = 0.25, expansion = 1e-5, residual_stress = 1e9", "both"),
+        ("nu = 0.25", "nu = 0.25, adhesion = 1e9", "coating.adhesion"),
         ("[sweep]", "[sweep]\nload = { from = 1.0, to = 9.0, count = 5 }", "load"),
         ("nu = 0.25", "nu = 0.25, E = 1e9", "sweep.modulus_ratio"),
         ("modulus_ratio = [0.5, 2.0]", "", "sweep.modulus_ratio"),

@@ -6,6 +6,7 @@ from functools import partial
 from math import isfinite, isinf
 from typing import Any
 
+from verification.cases.solid_schema import LIMITS
 from verification.desk.answer_stresses import Extreme
 from verification.desk.layer_limits import Designed
 from verification.judging.verdict import Claim, Outcome, Verdict
@@ -99,7 +100,7 @@ def _stated_columns(result: CaseResult, body: str, count: int) -> list[tuple[str
         "name": [names[i] or "" for i in coating] if any(names) else [],
         "residual stress": [*stated.get("residual", {}).get(body, ()), 0.0],
     }
-    for name in ("hardness", "yield_strength"):
+    for name in LIMITS:
         found[name.replace("_", " ")] = [limits.get(f"{place}.{name}") for place in places]
 
     def shown(values: list[Any], at: Any) -> Value:
@@ -112,13 +113,13 @@ def _stated_columns(result: CaseResult, body: str, count: int) -> list[tuple[str
 
 
 def stress_table(result: CaseResult, found: Designed) -> Table:
-    """The largest stresses of a case with its residual stresses, then how far each layer is from yielding."""
-    yielding = {(one.body, one.where): one for one in found.limits if one.yield_strength is not None}
+    """The largest stresses of a case with its residual stresses, then how far each is from its strength."""
+    limits = {(one.body, one.where, one.quantity): one for one in found.limits}
     a_h = scale(result.problem, "a_h")
 
     def used(at: Extreme) -> Value:
-        one = yielding.get((at.body, at.where)) if at.quantity == "von_mises" else None
-        return "" if one is None else Cell(f"{one.utilisation:.0%} of the yield strength; {one.begins}")
+        one = limits.get((at.body, at.where, at.quantity))
+        return "" if one is None else Cell(f"{one.utilisation:.0%} of its {one.of}; {one.begins}")
 
     return table_of(
         "By the semi-analytical method, with residual stresses.",
@@ -130,7 +131,7 @@ def stress_table(result: CaseResult, found: Designed) -> Table:
             ("±", lambda at: Cell(engineering(at.uncertainty, "Pa", 1), at.uncertainty)),
             ("x / a_h", lambda at: number(at.x / a_h, "{:.3g}".format)),
             ("z / a_h", lambda at: number(at.z / a_h, "{:.3g}".format)),
-            ("yielding", used),
+            ("strength", used),
         ],
     )
 

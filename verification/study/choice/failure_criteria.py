@@ -136,8 +136,10 @@ class Criteria(Strict):
         strength: dict[Any, Any] = dict(self.strength or {})
         for key, value in limits.items():
             layer, _, name = key.rpartition(".")
-            if name != "yield_strength":
+            if name == "hardness":
                 continue
+            if name != "yield_strength":
+                raise ValueError(f"{key}: a study takes the strengths of its coatings from criteria.strength")
             if (mode := modes.get(layer)) is None:
                 judged = (
                     "no stress of the ball" if layer.startswith("ball") else "all coatings together, no one"

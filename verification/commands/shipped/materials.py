@@ -1,0 +1,46 @@
+"""coatcheck materials: the library of materials, with the source of each."""
+
+from pathlib import Path
+
+from rich.markup import escape
+
+from verification.cases.materials import SHIPPED, plain_name, read_materials
+from verification.commands.common.command_error import CommandError
+from verification.commands.common.shared_options import AsJson
+from verification.commands.common.terminal import (
+    did_you_mean,
+    named_table,
+    print_json,
+    print_out,
+    with_exit_code,
+)
+from verification.problem.display_units import prefixed
+
+
+@with_exit_code
+def materials(*names: str, file: Path = SHIPPED, as_json: AsJson = False) -> int:
+    """List the materials that solve knows by name: typical E and nu, ranges, sources.
+
+    Args:
+        names: Materials to show alone.
+        file: A file of your own in place of the one that is shipped; copy that one and extend it.
+    """
+    known = read_materials(file)
+    chosen = []
+    for name in names:
+        if (found := known.get(plain_name(name))) is None:
+            raise CommandError(f"{name}: not in {file}{did_you_mean(plain_name(name), known)}")
+        chosen.append(found)
+    every = list({one.name: one for one in known.values()}.values())
+    chosen = chosen or every
+    if as_json:
+        print_json([one.model_dump(exclude_none=True) for one in chosen])
+        return 0
+    table = named_table("name", "E", "range", "nu", "yields", "also", "source")
+    for one in chosen:
+        note = "" if one.note == "-" else f"; {one.note}"
+        yields = prefixed(one.yield_strength, "Pa") if one.yield_strength else ""
+        cells = (prefixed(one.E, "Pa"), one.range, f"{one.nu:g}", yields, ", ".join(one.also))
+        table.add_row(escape(one.name), *map(escape, (*cells, f"{one.source}{note}")))
+    print_out(table, "", escape(f"typical values, for lack of your own: {file}"))
+    return 0

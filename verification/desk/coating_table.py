@@ -1,0 +1,187 @@
+"""Several coatings side by side: a row of a table each, solved, judged, written as CSV and as one page."""
+
+import csv
+import io
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from verification.cases.case_file import Case, parse_case
+from verification.cases.plausibility import refused
+from verification.cases.toml_file import CaseError
+from verification.desk.case_wording import case_text
+from verification.desk.contact_answer import answer, summary
+from verification.desk.layer_limits import MODES, LayerMode, layer_modes, place_name, strengths_of, verdict
+from verification.desk.stack_text import conditions, stack
+from verification.page.figures import inline, written
+from verification.page.html_page import render_sections
+from verification.page.page_parts import Gallery, Panel, Part, Section, Value, number, table_of
+from verification.page.page_parts import written as as_csv
+from verification.running.case_result import message_of
+from verification.sources.source_registry import METHODS
+
+COLUMNS = ("name", "ball", "load", "substrate", "friction")  # beside those that begin with "coating"
+MOST_ROWS, MOST_BYTES = 1000, 5_000_000
+HUES = dict(zip(MODES, ("#0072B2", "#D55E00", "#009E73", "#CC79A7"), strict=True))
+HEADS = ("name", "stack", "p0 [MPa]", "a [um]", "sigma_1 coatings [MPa]", "von Mises [MPa]", "shear [MPa]")
+VERDICT = ("governing", "used", "safety factor", "message")
+
+
+@dataclass(frozen=True)
+class CoatingRow:
+    """One coating of the table, solved: its ``numbers`` in the order of ``HEADS``.
+
+    modes : with their places, where it has strengths.   said : its answer in words.
+    message : why it could not be solved, "" where it was.
+    """
+
+    name: str
+    stack: str = ""
+    numbers: tuple[float, ...] = ()
+    modes: tuple[tuple[str, LayerMode], ...] = ()
+    said: str = ""
+    message: str = ""
+
+    @property
+    def governing(self) -> tuple[str, LayerMode] | None:
+        """The mode nearest to its strength, with its place in words; None without strengths."""
+        return max(self.modes, key=lambda pair: pair[1].utilisation, default=None)
+
+    @property
+    def cells(self) -> list[str]:
+        """The row as text, in the order of ``HEADS``, then of ``VERDICT``."""
+        place, mode = self.governing or ("", None)
+        judged = (
+            [f"{place} {MODES[mode.quantity][0]}", *_digits(mode.utilisation, mode.safety)]
+            if mode
+            else [""] * 3
+        )
+        return [self.name, self.stack, *(_digits(*self.numbers) or [""] * 5), *judged, self.message]
+
+
+def read_rows(path: Path) -> list[Case]:
+    """The problem of every row of a CSV file, in the words of ``coatcheck solve``. Raises CaseError."""
+    try:
+        text = path.read_bytes()[: MOST_BYTES + 1].decode("utf-8-sig")
+    except (OSError, UnicodeDecodeError) as error:
+        raise CaseError(f"{path}: cannot be read as CSV in UTF-8 ({error})") from None
+    first = text.partition("\n")[0]
+    rows = csv.reader(io.StringIO(text), delimiter=max(";\t,", key=first.count))
+    heads = [head.strip().casefold() for head in next(rows, [])]
+    wrong = [head for head in heads if head and head not in COLUMNS and not head.startswith("coating")]
+    missing = [head for head in COLUMNS[1:4] if head not in heads]
+    if wrong or missing or len(text) > MOST_BYTES:
+        what = f"has an unknown column {wrong[0]!r}" if wrong else "is too large"
+        what = f"has no column {missing[0]}" if missing else what
+        raise CaseError(f"{path}: {what}; the columns are {', '.join(COLUMNS)}, coating 1, coating 2, ...")
+    found = []
+    for line, cells in enumerate(rows, start=2):
+        given = dict(zip(heads, (cell.strip() for cell in cells), strict=False))
+        if not any(given.values()):
+            continue
+        coatings = [word for head, word in given.items() if head.startswith("coating") and word]
+        try:
+            friction = float(given.get("friction") or 0)
+            words = case_text(given["ball"], given["load"], given["substrate"], coatings, friction)
+            case = parse_case(words.encode(), Path(given.get("name") or f"row {line}"))
+            for slip in refused(case.problem):
+                raise ValueError(slip)
+        except (ValueError, KeyError) as error:
+            raise CaseError(f"{path}: line {line}: {error}") from None
+        found.append(case)
+    if not 1 <= len(found) <= MOST_ROWS:
+        raise CaseError(f"{path}: has {len(found)} coatings; give 1 to {MOST_ROWS}, a row each")
+    return found
+
+
+def solved_row(case: Case) -> CoatingRow:
+    """One row solved by the semi-analytical method, without its uncertainty; a failure is its message."""
+    try:
+        first = answer(case.problem, METHODS[0], {"estimate_uncertainty": False}, case.residual, case.layers)
+        modes = layer_modes(case.problem, first, strengths_of(case.limits), loads=False)
+    except Exception as error:  # a row that fails is a row with its message
+        return CoatingRow(case.name, stack(case), message=message_of(error))
+
+    def largest(quantity: str, where: str = "") -> float:
+        values = [at.value for at in first.extremes if at.quantity == quantity and at.where.startswith(where)]
+        return max(values, default=float("nan"))
+
+    p0, a = (first.numbers[name][0] for name in ("peak_pressure", "contact_radius"))
+    stresses = (p0, largest("sigma_1", "coating"), largest("von_mises"), largest("|sigma_xz|"))
+    scaled = [value / 1e6 for value in stresses]
+    said = " ".join(filter(None, (summary(case.problem, first, case.names), verdict(case, modes))))
+    named = tuple((place_name(case, one), one) for one in modes)
+    return CoatingRow(case.name, stack(case), (scaled[0], a / 1e-6, *scaled[1:]), named, said)
+
+
+def table_csv(rows: Sequence[CoatingRow]) -> str:
+    """The table as CSV."""
+    return as_csv([[*HEADS, *VERDICT], *(row.cells for row in rows)])
+
+
+def table_page(rows: Sequence[CoatingRow], cases: Sequence[Case], title: str) -> str:
+    """One page: the table, a bar of the utilisation of every coating by mode, a section of each."""
+    failed = sum(bool(one.message) for one in rows)
+    holding = [one.name for one in rows if one.governing and one.governing[1].utilisation <= 1]
+    judged = sum(one.governing is not None for one in rows)
+    headline = f"{len(rows)} coatings"
+    if judged:
+        headline = f"{len(holding)} of {judged} coatings with strengths hold"
+    table = table_of(
+        "By the semi-analytical method, residual stress included, each under its own load.",
+        rows,
+        [(head, _column(i)) for i, head in enumerate((*HEADS, *VERDICT[:-1]))],
+        row_css=lambda one: "disagrees" if one.governing and one.governing[1].utilisation > 1 else "",
+    )
+    sections = [Section("table", "Coatings", [Part("", [table])])]
+    if judged:
+        panel = Panel("Stress over strength", _bars([one for one in rows if one.modes]), "", "wide")
+        caption = "Each bar is one mode at its worst place; beyond the line it fails."
+        sections.append(Section("bars", "Utilisation", [Part("", gallery=Gallery([], [panel], caption))]))
+    parts = [
+        Part(f"{conditions(case.problem)}. {one.message or one.said}", title=f"{one.name}: {one.stack}")
+        for one, case in zip(rows, cases, strict=True)
+    ]
+    sections.append(Section("each", "Each coating", parts))
+    sources = sorted({case.source for case in cases if case.source.startswith("typical")})
+    facts = [("table", title), ("not solved", str(failed)), *(("source", one) for one in sources)]
+    return render_sections("coatcheck compare-coatings", headline, facts, sections)
+
+
+def _bars(rows: Sequence[CoatingRow]) -> Markup:
+    with mpl.rc_context({"font.size": 8}):
+        figure = Figure(figsize=(7.5, 0.9 + 0.16 * len(MODES) * len(rows)), layout="constrained")
+        axes = figure.subplots()
+        for k, (quantity, (does, _, _)) in enumerate(MODES.items()):
+            used = [
+                max((mode.utilisation for _, mode in one.modes if mode.quantity == quantity), default=0.0)
+                for one in rows
+            ]
+            at = np.arange(len(rows)) + 0.2 * (k - 1.5)
+            axes.barh(at, used, height=0.18, color=HUES[quantity], label=does)
+        axes.axvline(1.0, color="#c02a2a", linewidth=1.0, linestyle=(0, (4, 2)))
+        axes.set_yticks(range(len(rows)), [one.name for one in rows])
+        axes.invert_yaxis()
+        axes.set_xlabel("stress over strength")
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, 1.0 + 0.5 / len(rows)), ncols=4, frameon=False)
+        return inline(written(figure), "Stress over strength of each coating by mode", css="print")
+
+
+def _digits(*values: float) -> list[str]:
+    return ["" if value != value else f"{value:.3g}" for value in values]
+
+
+def _column(i: int) -> Callable[[CoatingRow], Value]:
+    """Cells of the column ``i``: words, or numbers to sort by."""
+
+    def cell(row: CoatingRow) -> Value:
+        text = row.cells[i]
+        words = i < 2 or i == len(HEADS)
+        return text if words or not text else number(float(text), lambda _: text)
+
+    return cell
