@@ -6,14 +6,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from fem_reference import element_numbers as chosen
 from fem_reference.elasticity.state import ElasticState
 from fem_reference.element_answer import ElementAnswer, PlainFields
 from fem_reference.estimate import Estimates, Uncertainty
 from fem_reference.meshing.location import SolidPoints, solid_points
 from fem_reference.scaling import Units
 from fem_reference.validation import check_friction
-
-AT_SINGULAR = 1e-8  # distance from a singular radius over that of the load
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +101,7 @@ class Solution(PlainFields):
         """The companion by which the errors were estimated, without estimates; None where there is none."""
         if not self.estimates:
             return None
-        states = tuple(estimate.companion for estimate in self.estimates)
+        states = tuple(estimate.coarser[0] for estimate in self.estimates)
         approach = sum(state.central_displacement for state in states)
         return replace(
             self,
@@ -179,7 +178,7 @@ class Solution(PlainFields):
             return answer
         r, z = np.broadcast_arrays(np.hypot(x, y), np.asarray(z, dtype=float))
         away = np.min([np.hypot(r - one, z) for one in self.singular_radii], axis=0)
-        at = away <= AT_SINGULAR * self.contact_radius
+        at = away <= chosen.AT_SINGULAR * self.contact_radius
         return ElementAnswer(*(None if part is None else np.where(at, np.nan, part) for part in answer))
 
     def _number(self, body: str) -> int:

@@ -7,7 +7,8 @@ import pytest
 
 from fem_reference import NotConverged, solve
 from fem_reference.contact import levels
-from fem_reference.contact_solver import CONTRASTS, QUALITY, _size
+from fem_reference.contact_solver import _size
+from fem_reference.element_numbers import CONTRASTS, QUALITY
 from verification.problem.point_answers import Points
 
 E = 210e9
