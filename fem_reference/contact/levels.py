@@ -42,7 +42,7 @@ def solve_levels(
     order, size : of the finest.  curvature : of the gap, as in `contact.undeformed_gap`
     Raises NotConverged when the load is not reached on one of the meshes.
     """
-    first = Grading.of(chosen.FIRST_SIZE, rows=chosen.FIRST_ROWS)
+    first = replace(Grading.of(chosen.FIRST_SIZE), rows=chosen.FIRST_ROWS)
     final, companion, coarsest = family(size)
     levels = [
         Level("first", first, chosen.FIRST_LOAD),

@@ -41,20 +41,20 @@ class Grading:
 
     size: float = 0.4
     edge_rate: float = 0.5
-    edge_size: float = chosen.EDGE_SIZE
+    edge_size: float = 1e-7
     axis_size: float = 0.2
     far_size: float = 0.8
     film_size: float = 0.8
-    rows: float = chosen.ROWS
+    rows: float = 2.0
     surface: float = 0.0
     edges: tuple[float, ...] = ()
 
     @classmethod
-    def of(cls, size: float, rows: float = chosen.ROWS) -> "Grading":
+    def of(cls, size: float) -> "Grading":
         """All sizes from one; the fan at the edge and the far field need less fine triangles."""
         fan = min(chosen.FAN_SIZE * size, chosen.LARGEST_IN_FAN)
         far = min(chosen.FAR_SIZE * size, chosen.LARGEST_FAR)
-        return cls(size, fan, axis_size=chosen.AXIS_SIZE * size, far_size=far, film_size=far, rows=rows)
+        return cls(size, fan, chosen.EDGE_SIZE, chosen.AXIS_SIZE * size, far, far, chosen.ROWS)
 
     def coarser(self) -> "Grading":
         """With all sizes larger by the factor of a family of meshes."""
