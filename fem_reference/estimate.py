@@ -8,18 +8,15 @@ Roache's grid convergence index of the finest for an order p, and the larger cou
     U = SAFETY max(|f1 - f2|, |f2 - f3| / r^p) / (r^p - 1)
 
 (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9, with his factor for an order that is not relied on).
-So a last change that is small by chance, an observed order above p, does not make U small. With elements of
-order k, p = k + 1 for displacements, approach, stiffness and contact radius, and p = k - 1, about what is
-observed next to the singular edge, interfaces and flat triangles, for pressures and stresses.
+A last change that is small by chance does not make U small. With elements of order k, p = k + 1 for
+displacements, approach, stiffness, contact radius; p = k - 1, about the observed, for pressure and stress.
 
 A change of a field crosses zero along lines where no mesh is exact. Its largest value in the neighbourhood of
 a point, `RINGS` rings of triangles or cells of a line, takes its place. Meshes are compared at the same r/a.
 
-Other errors are added. All meshes miss the given load within its tolerance, by known amounts: changes are
-taken at the given load, W ~ a^growth, d delta = dW / stiffness. An error da of the contact radius displaces
-the field, which changes values at fixed points next to the edge by up to the square root of da. The relative
-error of the approach, due to the whole mesh, counts in every stress and displacement. The prescribed far
-field and rounding are the rest.
+Other errors are added: of the load, whose known misses on coarser meshes are no changes (W ~ a^growth,
+d delta = dW / stiffness); of the contact radius, which displaces the field and so changes values next to the
+edge by up to its root; of the approach, in proportion in every field; of the far field; of rounding.
 """
 
 from collections.abc import Sequence
@@ -54,9 +51,8 @@ class PressureEstimate:
     """Uncertainty of the pressure as a function of the radius.
 
     states : on the three meshes, finest first, compared at the same r/a
-    radius_error : uncertainty of the contact radius; the change of p when the edge shifts by it is added,
-        which covers the ring between the contact edges and the infinite slope of p beside it
-    everywhere : added inside the contact, for errors independent of element size
+    radius_error : of the contact; the change of p when the edge shifts by it is added, for the infinite slope
+    everywhere : added inside the contact
     """
 
     states: tuple[ElasticState, ...]
@@ -72,20 +68,17 @@ class PressureEstimate:
         return d.contact_vertices, from_changes(largest_around(np.abs(change)), d.order - 1)
 
     def __call__(self, r: np.ndarray) -> np.ndarray:
-        pressure, edge = self.states[0].pressure, self.radius_error
-        shifted = [pressure(np.abs(r + shift)) - pressure(r) for shift in (-edge, edge)]
+        pressure, shifts = self.states[0].pressure, (-self.radius_error, self.radius_error)
+        shifted = [pressure(np.abs(r + shift)) - pressure(r) for shift in shifts]
         inside = np.where(r <= self.states[0].mesh.contact_radius, self.everywhere, 0.0)
-        between = np.interp(r, *self._at_vertices, right=0.0)
-        return between + np.max(np.abs(shifted), axis=0) + inside
+        return np.interp(r, *self._at_vertices, right=0.0) + np.max(np.abs(shifted), axis=0) + inside
 
 
 @dataclass(frozen=True, eq=False)
 class StressEstimate(Uncached):
     """Uncertainty of stress and displacement of one harmonic as a function of position.
 
-    fields : on the three meshes, finest first
-    radius_error : uncertainty of the contact radius
-    relative : added in proportion to the stress, for errors of the load
+    fields : on the three meshes, finest first.  relative : added in proportion, for errors of the load
     everywhere, far : added to every stress and displacement, for the truncation of the half-space
     """
 
@@ -151,17 +144,13 @@ class StressEstimate(Uncached):
         near = np.flatnonzero(np.hypot(at.r - a, at.z) < chosen.STRIP * a)
         for shift in (-self.radius_error, self.radius_error) if near.size else ():
             moved = d.locator.points(at.r[near] + shift, at.z[near], at.layer[near])
-            difference = np.abs(self.fields[0](moved)[1] - stress[:, near])
-            change[:, near] = np.maximum(change[:, near], difference)
+            change[:, near] = np.maximum(change[:, near], np.abs(self.fields[0](moved)[1] - stress[:, near]))
         return change
 
 
 @dataclass(frozen=True, eq=False)
 class Estimates:
-    """Uncertainty of one body: ``scalars`` in SI units, pressure and stresses in scaled units.
-
-    coarser : the states on the two coarser meshes
-    """
+    """Uncertainty of one body, ``scalars`` in SI units; its states on the two ``coarser`` meshes."""
 
     scalars: Uncertainty
     pressure: PressureEstimate
@@ -189,19 +178,20 @@ def contact_estimates(
     """
     final, order = contacts[0], contacts[0].discretisation.order
     # as if each had exactly the load; what the last triangles displace the edge is a cause of its own
-    radii = [one.radius_at(final.load) + one.edge_displacement for one in contacts]
-    approaches = [one.approach + (final.load - one.load) / one.stiffness for one in contacts]
+    values = (
+        [one.radius_at(final.load) + one.edge_displacement for one in contacts],
+        [one.approach + (final.load - one.load) / one.stiffness for one in contacts],
+        [one.stiffness for one in contacts],
+    )
+    radius, approach, stiffness = (of_scalar(one, order + 1) for one in values)
     coarser = tuple(
         tuple(ElasticState.of_contact(state.solid, one, one.ball if k else None) for one in contacts[1:])
         for k, state in enumerate(states)
     )
     # a force out of balance is a load that the solution does not carry: rounding, across a large contrast
-    radius, approach, stiffness = (
-        of_scalar(values, order + 1) for values in (radii, approaches, [one.stiffness for one in contacts])
-    )
-    edge = chosen.SAFETY * abs(final.edge_displacement)
     truncation = sum(state.truncation(0)[0] for state in states) / final.approach
     stiffness += (final.residual + truncation) * final.stiffness
+    edge = chosen.SAFETY * abs(final.edge_displacement)
     found = estimates(states, coarser, units, approach, radius, edge, final.residual)
     return found, float(stiffness * units.load / units.displacement)
 
@@ -217,19 +207,16 @@ def estimates(
 ) -> tuple[Estimates, ...]:
     """Uncertainty of each of the frictionless ``states`` of one contact.
 
-    coarser : each state on the two coarser meshes.  approach, radius : errors by the size of all triangles
-    edge : error of the radius by the last triangles.  load : relative error of the load
+    coarser : each on two meshes.  approach, radius : errors by all triangles; edge : by the last; load : relative
     """
-    flat = states[0]
-    a, (at, largest) = flat.mesh.contact_radius, flat.peak
+    flat, (at, largest) = states[0], states[0].peak
+    a, central = flat.mesh.contact_radius, sum(state.central_displacement for state in states)
     far_approach, far_stress, curvature = np.sum([state.truncation(0) for state in states], axis=0)
-    central = sum(state.central_displacement for state in states)
-    contact = flat.normal.root_at_edge  # a given pressure with its radius is exact
+    # What the whole mesh misses of a compliance changes the pressure. A given one with its radius is exact.
+    share, bent = (approach / central, curvature) if flat.normal.root_at_edge else (0.0, 0.0)
     # The sphere has curvature 1; at given load a ~ R^(1/3) and p0 ~ R^(-2/3), on the bare substrate.
-    far_radius, far_pressure = np.array([a, largest]) * (curvature if contact else 0.0)
+    far_radius, far_pressure = a * bent, largest * bent
     balance = load / 2 * a  # a ~ W^(1/n), n at least 2 on any layers
-    # What the whole mesh misses of a compliance changes the pressure; under a given one it changes u alone.
-    share = approach / central if contact else 0.0
     radius_error = radius + edge + far_radius + balance
     everywhere = far_pressure + load / 3 * largest
     pressure = PressureEstimate((flat, *coarser[0]), radius_error, everywhere)

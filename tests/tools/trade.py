@@ -12,9 +12,8 @@ from faults_planted.fault_planting import owner_of, planted
 from verification.cases.case_file import parse_case
 from verification.cases.random_problems import draw
 from verification.commands.common.command_error import CommandError
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.shared_options import Flag
-from verification.commands.common.terminal import named_table, print_out
+from verification.commands.common.terminal import named_table, print_out, with_exit_code
 from verification.running.case_result import CaseResult
 from verification.running.contact_run import judge_case, solve_case
 from verification.sources.source_registry import EXACT, METHODS, solvers
