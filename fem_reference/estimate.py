@@ -207,7 +207,7 @@ def estimates(
 ) -> tuple[Estimates, ...]:
     """Uncertainty of each of the frictionless ``states`` of one contact.
 
-    coarser : each on two meshes.  approach, radius : errors by all triangles; edge : by the last; load : relative
+    coarser : each on two meshes.  approach, radius : errors by all triangles.  edge : by the last ones
     """
     flat, (at, largest) = states[0], states[0].peak
     a, central = flat.mesh.contact_radius, sum(state.central_displacement for state in states)

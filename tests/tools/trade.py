@@ -6,11 +6,11 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from drawn_problems import draw
 from faults_planted.fault_anchor import Change
 from faults_planted.fault_planting import owner_of, planted
 
 from verification.cases.case_file import parse_case
-from verification.cases.random_problems import draw
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.shared_options import Flag
 from verification.commands.common.terminal import named_table, print_out, with_exit_code
