@@ -171,14 +171,6 @@ def history() -> str:
     return table(["date", "numbers", "reason"], rows)
 
 
-def more_pages() -> str:
-    """Table of contents of the pages that the index does not name."""
-    index = (SOURCE / "index.md").read_text(encoding="utf-8")
-    named = set(re.findall(r"^\w+$", index, re.MULTILINE))
-    more = [path.stem for path in sorted(SOURCE.glob("*.md")) if path.stem not in {*named, "index"}]
-    return "\n".join(["```{toctree}", ":maxdepth: 1", ":caption: More", "", *more, "```"]) if more else ""
-
-
 def enclosures() -> str:
     """Every enclosed problem with the middle of its bounds, rounded to twelve digits."""
     record = read_enclosures(RECORDS)
@@ -229,6 +221,5 @@ _ALL: tuple[Callable[[], str], ...] = (
     solved,
     enclosures,
     assumption_costs,
-    more_pages,
 )
 BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL} | WORKED

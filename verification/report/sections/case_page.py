@@ -4,16 +4,13 @@ import shlex
 from pathlib import PurePath
 from typing import Any
 
-import numpy as np
-
 from verification.cases.case_file import default_cases
 from verification.cases.published_file import published_cases
-from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.judging.verdict import Outcome
 from verification.page.number_text import scientific
 from verification.page.source_labels import OUTCOMES, pair_style, source_label, source_style, symbol_of
 from verification.page.symbol_text import typeset
 from verification.problem.point_answers import BALL
-from verification.problem.quantity import QUANTITIES
 from verification.report.figures.field_pictures import pictures
 from verification.report.figures.line_panels import case_figures
 from verification.report.figures.problem_sketch import sketch
@@ -121,7 +118,6 @@ def data(material: Material) -> dict[str, Any]:
     quantities: dict[str, int] = {}
     lines: dict[str, int] = {}
     pairs: dict[tuple[str, str], int] = {}
-    parts: dict[str, int] = {}
     cases = {}
     for result in material.contacts:
         rows = [
@@ -133,7 +129,6 @@ def data(material: Material) -> dict[str, Any]:
                 _short(item.uncertainty),
                 item.claim.cap,
                 list(OUTCOMES).index(item.verdict.outcome),
-                parts.setdefault(dominating_parameter(result, item.claim, item.verdict), len(parts)),
             ]
             for item in ordered(items_of(result.verdicts))
         ]
@@ -150,40 +145,10 @@ def data(material: Material) -> dict[str, Any]:
         "quantities": [[name, typeset(symbol_of(name))] for name in quantities],
         "lines": list(lines),
         "pairs": [[*pair, pair_style(pair).colour] for pair in pairs],
-        "parts": list(parts),
         "agrees": list(OUTCOMES).index(Outcome.AGREES),
         "outcomes": [f"{style.mark} {style.word}" for style in OUTCOMES.values()],
         "cases": cases,
     }
-
-
-def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> str:
-    """The source with the larger uncertainty at the deciding point, with its dominating parameter.
-
-    U of a stress or pressure is that of p0, of a displacement or the stiffness that of the approach, with its
-    own part due to the first parameter, the edge terms or the size of patches or elements: the excess of U
-    over the other parts belongs to the first.
-    """
-    sides = []
-    for source in claim.between:
-        profile = result.profile_of.get((claim.quantity, claim.line, source))
-        if profile is not None and profile.uncertainty is not None and profile.position.size:
-            at = 0 if verdict.worst is None else int(np.argmin(np.abs(profile.position - verdict.worst)))
-            sides.append((float(profile.uncertainty[at]), source))
-    if not sides or not max(sides)[0] > 0:
-        return ""
-    U, source = max(sides)
-    budget = next((s.budget for s in result.sources if s.source == source), ())
-    scalar_claim = any(q == claim.quantity for q, _, _ in budget)
-    like = "approach" if QUANTITIES[claim.quantity].kind in ("slope", "displacement") else "peak_pressure"
-    quantity = claim.quantity if scalar_claim else like
-    parts = [(name, value) for q, name, value in budget if q == quantity]
-    if not parts:
-        return source_label(source)
-    if not scalar_claim:
-        others = sum(value for _, value in parts[1:])
-        parts[0] = (parts[0][0], max(U - others, 0.0))
-    return f"{source_label(source)}: {max(parts, key=lambda item: item[1])[0]}"
 
 
 def _short(value: float | None, digits: int = 3) -> float | None:

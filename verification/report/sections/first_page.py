@@ -352,9 +352,9 @@ def worth(material: Material) -> list[Worth]:
         recorded("random problems with a false alarm", wrong, alarms.problems, "#alarms", alarms, note)
     if faults := evidence.faults:
         for place, rows in by_place(faults).items():
-            # the harness judges: its faults show in its self-tests and in the manifest, not in a comparison
+            # what judges a method shows in self-tests, published tables and the manifest, too
             caught = sum(row.caught for row in rows), len(rows)
-            good, total = caught if place == "harness" else score(rows)
+            good, total = caught if place in ("harness", "references") else score(rows)
             if total:
                 recorded(f"faults planted in the {place} noticed", good, total, "#faults", faults)
         silent = [row not in faults.alarms for row in faults.controls]
