@@ -67,24 +67,15 @@ class Cost:
     uncertainty: float
 
     @property
-    def name(self) -> str:
-        """The quantity in words."""
-        return WORDS.get(self.quantity, self.quantity)
-
-    @property
     def size(self) -> float:
         """Magnitude of the change and its uncertainty together."""
         return abs(self.change) + self.uncertainty
 
     @property
-    def percent(self) -> str:
-        """The size in per cent, with a bound where it is tiny."""
-        return _percent(self.size)
-
-    @property
     def words(self) -> str:
-        """Size, quantity and assumption."""
-        return f"{self.percent} of the {self.name} ({self.assumption})"
+        """Size in per cent, with a bound where it is tiny, and quantity."""
+        percent = f"{100 * self.size:.2g} %" if self.size >= LEAST else "less than 0.0001 %"
+        return f"{percent} of the {WORDS.get(self.quantity, self.quantity)}"
 
 
 @dataclass(frozen=True)
@@ -105,16 +96,12 @@ class ModelError:
         stresses = [name for name in QUANTITIES if name not in SCALARS]
         return tuple(one for one in (self.largest(SCALARS), self.largest(stresses)) if one)
 
-    @property
-    def parts(self) -> tuple[str, ...]:
-        """The dominating costs, each with its assumption."""
-        return tuple(one.words for one in self.dominating)
-
     def message(self) -> str:
         """One sentence: how good the model is."""
-        if not self.parts:
+        if not self.dominating:
             return "the error of the model was not evaluated"
-        return f"the model itself is good to {' and '.join(self.parts)}"
+        parts = (f"{one.words} ({one.assumption})" for one in self.dominating)
+        return f"the model itself is good to {' and '.join(parts)}"
 
     @property
     def sentences(self) -> str:
@@ -128,7 +115,7 @@ class ModelError:
         others = dict.fromkeys(one.assumption for one in self.costs if one.assumption not in named)
         worst = [cost for one in others if (cost := self.largest(assumption=one)) and cost.size >= LEAST]
         unknown = (f"not known here: {assumption} ({reason})" for assumption, reason in self.missing)
-        return (*(f"less: {one.words}" for one in worst), *unknown)
+        return (*(f"less: {one.words} ({one.assumption})" for one in worst), *unknown)
 
     def warnings(self, judged: Collection[str] = QUANTITIES, told: Sequence[str] = ()) -> tuple[str, ...]:
         """A line for each assumption that costs more than ``LIMIT`` of a quantity among ``judged``.
@@ -141,7 +128,7 @@ class ModelError:
                 continue
             worst = self.largest(judged, one.title)
             if worst is not None and worst.size > LIMIT:
-                found.append(f"{one.title} costs {_percent(worst.size)} of the {worst.name}")
+                found.append(f"{one.title} costs {worst.words}")
         return tuple(found)
 
 
@@ -182,10 +169,6 @@ def judged_quantities(claimed: Collection[str]) -> tuple[str, ...]:
         "shear": ("sigma_xz",),
     }
     return tuple(name for name in QUANTITIES if any(one in claimed for one in by.get(name, (name,))))
-
-
-def _percent(size: float) -> str:
-    return f"{100 * size:.2g} %" if size >= LEAST else "less than 0.0001 %"
 
 
 def _read(maps: AssumptionMaps, name: str, problem: CoatedContact) -> tuple[Change, Change]:

@@ -6,6 +6,7 @@ Every number comes from the baseline or a record of this version.
 import re
 from collections.abc import Callable
 from datetime import datetime
+from importlib.metadata import version
 from pathlib import Path
 
 from verification.cases.case_file import default_cases
@@ -160,6 +161,19 @@ def false_alarms() -> str:
     return f"{text}\n\n{table(head, rows, 1)}"
 
 
+def citation() -> str:
+    """An entry of BibTeX for this version."""
+    fields = {
+        "author": "{the coatcheck developers}",
+        "title": "coatcheck: verification of coated point contact by two independent methods and exact "
+        "references",
+        "version": version("coatcheck"),
+        "doi": "",
+    }
+    lines = (f"  {name} = {{{value}}}," for name, value in fields.items())
+    return "\n".join(["```bibtex", "@software{coatcheck,", *lines, "}", "```"])
+
+
 def real_guests() -> str:
     """Codes of others examined: cases, largest differences, time, memory."""
     return shown(guests_section.section().parts[0].tables[0])
@@ -217,6 +231,7 @@ _ALL: tuple[Callable[[], str], ...] = (
     fault_score,
     false_alarms,
     real_guests,
+    citation,
     history,
     solved,
     enclosures,

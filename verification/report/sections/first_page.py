@@ -304,8 +304,7 @@ def model_costs(material: Material) -> list[Worth]:
         ]
         if found:
             cost, result = max(found, key=lambda one: one[0].size)
-            words = f"{cost.percent} of the {cost.name}"
-            rows.append(Worth(title, words, f"#{material.anchors[result]}", None, result.title))
+            rows.append(Worth(title, cost.words, f"#{material.anchors[result]}", None, result.title))
     return rows
 
 
