@@ -26,7 +26,7 @@ Reading = Callable[[CoatedContact], tuple[Change, Change]]
 
 @dataclass(frozen=True)
 class Assumption:
-    """What all sources assume, with its ``title`` in sentences.
+    """An assumption of all sources, with its ``title`` in sentences.
 
     change : change of a contact by dropping it, with the uncertainty; ValueError where there is none.
         None where the model is too slow for this, so that its map is read.
@@ -133,7 +133,7 @@ class ModelError:
 
 
 def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> ModelError:
-    """What the assumptions cost at ``problem``, in tenths of a second; in seconds under h < a_h/20.
+    """Costs of the assumptions at ``problem``, in tenths of a second; in seconds under h < a_h/20.
 
     maps : to read the assumptions in that are not evaluated; those of the package if None.
     """

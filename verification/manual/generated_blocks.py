@@ -62,7 +62,7 @@ over the smaller of $\delta_h$ and $\delta$.
 
 
 def totals() -> str:
-    """What the default run judges, in one sentence."""
+    """Counts of the default run, in one sentence."""
     known = baseline()
     contacts = [name for name in known.cases if not known.published(name)]
     comparisons = sum(len(c.pairs) for name in contacts for c in known.manifests[name].comparisons)
@@ -210,7 +210,7 @@ def enclosures() -> str:
 
 
 def assumption_costs() -> str:
-    """Where each measured assumption costs 0.1, 1 and 5 %, and the largest change of its map."""
+    """Places at which each measured assumption costs 0.1, 1 and 5 %, and the largest change of its map."""
     maps = read_maps(RECORDS)
     assert maps is not None
     return paragraphs(model_section.parts(maps.maps))

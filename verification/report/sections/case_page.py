@@ -15,7 +15,7 @@ from verification.report.figures.field_pictures import pictures
 from verification.report.figures.line_panels import case_figures
 from verification.report.figures.problem_sketch import sketch
 from verification.report.figures.verdict_strips import case_strips, items_of, ordered
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.sections import invariants_section, published_section
 from verification.report.tables.case_lookup import contact_radius, divisor, layers, scale, slug
 from verification.report.tables.case_tables import (
@@ -32,8 +32,8 @@ from verification.report.tables.line_csv import line_csv
 from verification.running.case_result import CaseResult
 
 
-def contents(material: Material, result: CaseResult, anchor: str) -> dict[str, Any]:
-    """What the template of a case shows under its ``anchor``."""
+def contents(material: ReportMaterial, result: CaseResult, anchor: str) -> dict[str, Any]:
+    """Content of the template of a case under its ``anchor``."""
     problem, verdicts, file = result.problem, result.verdicts, slug(result.name)
     a_h, p_h = scale(problem, "a_h"), scale(problem, "p_h")
     radius, ball = contact_radius(result), layers(problem, BALL)
@@ -113,8 +113,8 @@ def summary(result: CaseResult) -> str:
     return f"{text}." if total else "No comparison was possible."
 
 
-def data(material: Material) -> dict[str, Any]:
-    """What the script of the page knows of the comparisons: names once, then rows of indices and numbers."""
+def data(material: ReportMaterial) -> dict[str, Any]:
+    """The comparisons as the script of the page reads them: names once, then rows of indices and numbers."""
     quantities: dict[str, int] = {}
     lines: dict[str, int] = {}
     pairs: dict[tuple[str, str], int] = {}
