@@ -96,12 +96,16 @@ class ModelError:
         stresses = [name for name in QUANTITIES if name not in SCALARS]
         return tuple(one for one in (self.largest(SCALARS), self.largest(stresses)) if one)
 
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The dominating costs, each with its assumption."""
+        return tuple(f"{one.words} ({one.assumption})" for one in self.dominating)
+
     def message(self) -> str:
         """One sentence: how good the model is."""
-        if not self.dominating:
+        if not self.parts:
             return "the error of the model was not evaluated"
-        parts = (f"{one.words} ({one.assumption})" for one in self.dominating)
-        return f"the model itself is good to {' and '.join(parts)}"
+        return f"the model itself is good to {' and '.join(self.parts)}"
 
     @property
     def sentences(self) -> str:
