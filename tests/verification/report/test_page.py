@@ -158,7 +158,7 @@ def test_every_figure_says_what_it_shows_and_carries_its_numbers(document, resul
     lines = {a["data-of"] for a in document.all("a") if "data-csv" in a and "data-of" in a}
     assert {a["data-line"] for a in figures if "data-line" in a} <= lines
     tables = [a for a in document.all("a") if "data-csv" in a]
-    assert len(tables) > sum(len({p.line for p in r.profiles}) for r in results)
+    assert len(tables) == sum(len({p.line for p in r.profiles}) for r in results)
     for link in tables:
         kind, _, packed = link["href"].partition(",")
         assert kind == "data:application/gzip;base64"
