@@ -194,5 +194,7 @@ def before(body: str) -> str:
 
 
 def as_stress(value: float) -> str:
-    """A stress [Pa] in GPa or MPa, three digits."""
-    return f"{value / 1e9:.3g} GPa" if value >= 1e9 else f"{value / 1e6:.3g} MPa"
+    """A stress [Pa] in GPa, MPa, kPa or Pa, three digits."""
+    units = (1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, "")
+    unit, prefix = next(one for one in units if value >= one[0] or one is units[-1])
+    return f"{value / unit:.3g} {prefix}Pa"
