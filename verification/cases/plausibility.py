@@ -194,7 +194,5 @@ def before(body: str) -> str:
 
 
 def as_stress(value: float) -> str:
-    """A stress [Pa] in GPa, MPa, kPa or Pa, three digits."""
-    units = (1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, "")
-    unit, prefix = next(one for one in units if value >= one[0] or one is units[-1])
-    return f"{value / unit:.3g} {prefix}Pa"
+    """A stress [Pa] of at least 0 with its prefix, three digits."""
+    return prefixed(value, "Pa", 3) if value else "0 Pa"
