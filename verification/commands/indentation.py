@@ -68,10 +68,10 @@ def indentation(
         from verification.desk.indented.indentation_figure import FORMATS
 
         require_format(plot, FORMATS, "--plot")
-    if zero and by not in (None, "depth"):
-        raise CommandError(f"--zero is that of the depth: leave it out with --by {by}")
     curve = read_curve(file, _depths(depths))
-    kind = by or next((one for one in KINDS if set(KINDS[one]) <= curve.values.keys()), "depth")
+    kind: str = by or next((one for one in KINDS if set(KINDS[one]) <= curve.values.keys()), "depth")
+    if zero and kind != "depth":
+        raise CommandError(f"--zero is that of the depth: leave it out where the {KINDS[kind][0]} is fitted")
     if missing := set(KINDS[kind]) - curve.values.keys():
         raise CommandError(f"{file}: --by {kind} requires the column {' and '.join(sorted(missing))}")
     load = float(curve.values["load"].max()) if "load" in curve.values else 1e-3

@@ -101,7 +101,7 @@ def spread(
     """The interval of ``first``, the answer to ``case``, over ``ranges``. Raises what its source raises."""
     fast, lows, highs = {**numerics, "estimate_uncertainty": False}, dict[Key, float](), dict[Key, float]()
     shares: dict[Key, tuple[str, float]] = {}
-    values = {(name,): value for name, (value, _) in first.numbers.items()}
+    values: dict[Key, float] = {(name,): value for name, (value, _) in first.numbers.items()}
     values |= {(at.body, at.quantity, at.where): at.value for at in first.extremes}
     for one in ranges:
         ends = []

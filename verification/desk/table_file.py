@@ -74,10 +74,10 @@ def answer_rows(case: Case, found: ContactAnswer, spread: Spread | None = None) 
         rows.append([name, None, "contact", None, value, stated, QUANTITIES[name].unit, None, None, *ends])
     for at in found.extremes:
         named = with_name(at.body, at.where, case.names)
-        name = named.removeprefix(at.where).strip(" ()") or None
+        called = named.removeprefix(at.where).strip(" ()") or None
         ends = spread.ends[at.body, at.quantity, at.where] if spread else ()
         numbers = [None if one != one else one for one in (at.value, at.uncertainty, at.x, at.z)]
-        rows.append([at.quantity, at.body, at.where, name, *numbers[:2], "Pa", *numbers[2:], *ends])
+        rows.append([at.quantity, at.body, at.where, called, *numbers[:2], "Pa", *numbers[2:], *ends])
     return rows
 
 

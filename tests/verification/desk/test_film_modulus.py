@@ -129,7 +129,7 @@ def test_a_bad_curve_is_one_message(text, said, tmp_path):
         ({"--by": "radius"}, "requires the column radius"),
         ({"--depths": "5 nm"}, "give two"),
         ({"--depths": "9 nm, 5 nm"}, "below the second"),
-        ({"--zero": None, "--by": "stiffness"}, "leave it out"),
+        ({"--zero": None, "--by": "radius"}, "leave it out"),
         ({"--substrate": "stel"}, "--substrate"),
     ],
 )

@@ -16,6 +16,7 @@ the change of E by 1 % of each.
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import CubicSpline
@@ -35,7 +36,7 @@ KINDS = {  # what is fitted, over what
     "punch": ("stiffness", "radius"),
 }
 RADII = 16  # contact radii of a curve; a cubic spline between their logarithms leaves 1e-5
-RESOLUTION = {"nodes": 40, "panel": 10, "tail": 20.0}  # of the integral equation: eight digits
+RESOLUTION: Any = {"nodes": 40, "panel": 10, "tail": 20.0}  # of the integral equation: eight digits
 SCANNED = np.geomspace(1e-3, 1e3, 7)  # of the substrate's modulus, where the search for E begins
 LEVEL = 0.95
 UNKNOWN = 1.0  # of ln E: a film whose interval is wider is not measured by the curve
@@ -232,8 +233,8 @@ def _moved(problem: CoatedContact, film: int, kind: str) -> Iterator[tuple[str, 
                 yield f"{what} of {name}", replace(problem, coatings=(*layers[:i], layer, *layers[i + 1 :]))
     yield "E of the substrate", replace(problem, substrate=(1.01 * E, nu))
     if problem.ball is not None:
-        E, *rest = problem.ball
-        yield "E of the ball", replace(problem, ball=(1.01 * E, *rest))
+        E, nu, coatings = problem.ball
+        yield "E of the ball", replace(problem, ball=(1.01 * E, nu, coatings))
     if kind != "punch":
         yield "radius of the ball", replace(problem, radius=1.01 * problem.radius)
 
