@@ -325,9 +325,9 @@ def with_moduli(case: Case, moduli: Mapping[tuple[str, int], float]) -> Case:
     _, checked = read_toml(case.text.encode(), Path(case.name), _CaseFile)
     parts: dict[str, Any] = {}
     for body, (solid, coatings) in checked.problem.bodies.items():
+        every: list[Any] = [*coatings, solid]
         *layers, base = (
-            one.model_copy(update={"E": moduli.get((body, i), one.E)})
-            for i, one in enumerate((*coatings, solid))
+            one.model_copy(update={"E": moduli.get((body, i), one.E)}) for i, one in enumerate(every)
         )
         if body == BALL:
             parts["ball"] = base.model_copy(update={"coatings": layers})
