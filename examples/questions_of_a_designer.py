@@ -35,6 +35,6 @@ for row, found in enumerate(answers.values()):
 axes.axvline(1.0, color="black", linewidth=1)
 axes.set_yticks(range(len(answers)), answers)
 axes.invert_yaxis()
-axes.margins(x=0.2)
+axes.margins(x=0.25)
 axes.set(xlabel="stress over strength, of the mode nearest to its limit")
 figure.savefig("questions_of_a_designer.png", dpi=120)

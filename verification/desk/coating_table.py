@@ -91,8 +91,8 @@ def read_rows(path: Path) -> list[Case]:
         coatings = [word for head, word in given.items() if head.startswith("coating")]
         try:
             friction = float(given.get("friction", 0))
-            solids = (given.get(key, "") for key in ("ball", "load", "substrate"))
-            words = case_text(*solids, coatings, friction)
+            ball, load, substrate = (given.get(key, "") for key in ("ball", "load", "substrate"))
+            words = case_text(ball, load, substrate, coatings, friction)
             case = parse_case(words.encode(), Path(given.get("name") or f"row {line}"))
             for slip in refused(case.problem):
                 raise ValueError(slip)
