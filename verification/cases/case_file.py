@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from math import inf, isinf
+from math import inf, isinf, prod
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -236,8 +236,8 @@ class _CaseProblem(Sized):
         """The problem under a load; a thickness over a_h is that over the scale of both bodies uncoated."""
         ball, substrate = self.ball, (self.substrate.E, self.substrate.nu)
         indenter = self.indenter.pair if self.indenter else None
-        ellipsoid = indenter and indenter[0] == "ellipsoid"
-        radius = float((indenter[1][0] * indenter[1][1]) ** 0.5) if ellipsoid else self.size
+        ellipsoid = indenter is not None and indenter[0] == "ellipsoid"
+        radius = float(prod(indenter[1]) ** 0.5) if indenter and ellipsoid else self.size
         uncoated = ball.bare if ball else None
         bare = CoatedContact(radius, load, (), substrate, self.friction, uncoated, indenter)
         given = ball.coated(bare.a_h, over) if ball else None

@@ -14,6 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import accumulate
+from typing import Any
 
 import numpy as np
 
@@ -103,7 +104,8 @@ def stresses(
     """
     # an ellipsoid along x, and where it does not slide along y
     axes = (False,) if problem.friction else (False, True)
-    sides = [AlongAxis(solution, across=across) for across in axes if problem.elliptical] or [solution]
+    ellipse = [AlongAxis(solution, across=across) for across in axes if problem.elliptical]
+    sides: list[Any] = [*ellipse] or [solution]
     found, drawn = [], []
     searched: dict[tuple[object, ...], tuple[_Layers, list[list[tuple[str, str, Located]]]]] = {}
     for body in problem.bodies:

@@ -7,6 +7,7 @@ an ellipse they do so twice: along x, and in a frame of exchanged axes along y.
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from verification.problem.array_types import Array
 from verification.problem.point_answers import Answer, Points, Sampled
@@ -21,7 +22,7 @@ def half_axis(contact: Any, *, across: bool) -> float:
     """Distance [m] from the origin along x, or along y with ``across``, to where the pressure ends."""
     low, high = 0.0, contact.contact_radius
 
-    def pressed(at: Array) -> Array:
+    def pressed(at: Array) -> NDArray[np.bool_]:
         return np.asarray(contact.pressure(*((0 * at, at) if across else (at, 0 * at)))) > 0
 
     while pressed(np.array([high]))[0]:
