@@ -2,21 +2,25 @@
 
 from pathlib import Path
 
+import matplotlib.pyplot as plt
+
 from verification.cases.case_file import parse_case
 from verification.desk.case_wording import case_text
 from verification.desk.contact_answer import answer
 from verification.sources.exact_sources import hertz
 
-RACE = {"radii": "4.7625 mm, 4.7625 mm", "against": "18.2 mm, -4.9 mm"}
-for coatings in ([], ["DLC 2 um"]):
-    text = case_text("100Cr6", "500 N", "100Cr6", coatings, on_ball=coatings, **RACE)
+RACE = {"radii": "4.7625 mm, 4.7625 mm", "against": "18.2 mm, -5.2 mm"}
+figure, axes = plt.subplots(figsize=(6, 3.6), layout="constrained")
+for name, coatings in {"bare": [], "DLC on both": ["DLC 4 um"]}.items():
+    text = case_text("100Cr6", "200 N", "100Cr6", coatings, on_ball=coatings, **RACE)
     problem = parse_case(text.encode(), Path("race")).problem
     found = answer(problem, "semianalytic", {"estimate_uncertainty": False})
-    print("with DLC on both" if coatings else "bare")
-    for name in ("half_axis_x", "half_axis_y"):
-        print(f"  {name} {1e6 * found.numbers[name][0]:.2f} um")
-    print(f"  p0 {found.numbers['peak_pressure'][0] / 1e6:.3f} MPa")
-    if not coatings:
-        print(f"  Hertz {hertz(problem).peak_pressure / 1e6:.3f} MPa")
-    tension = max((at for at in found.extremes if at.quantity == "sigma_1"), key=lambda at: at.value)
-    print(f"  largest tension {tension.value / 1e6:.0f} MPa in the {tension.where} of the {tension.body}")
+    p0, *sizes = (found.numbers[key][0] for key in ("peak_pressure", "half_axis_x", "half_axis_y"))
+    closed = "" if coatings else f", Hertz {hertz(problem).peak_pressure / 1e6:.3f} MPa"
+    half_axes = " and ".join(f"{1e6 * size:.2f} µm" for size in sizes)
+    print(f"{name}: half axes {half_axes}, p0 {p0 / 1e6:.3f} MPa{closed}")
+    surface = found.courses[0]
+    axes.plot(surface.x * 1e6, surface.stress[0] / 1e6, label=name)
+axes.set(xlabel="x along the rolling direction [µm]", ylabel="sigma_xx on the race [MPa]")
+axes.legend()
+figure.savefig("ball_in_its_race.png", dpi=120)
