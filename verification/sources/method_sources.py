@@ -56,6 +56,11 @@ def _shape_by_elements(problem: CoatedContact, numerics: Mapping[str, Any]) -> A
     """An indenter that is no sphere: elements correct a pressure of patches until their gap vanishes."""
     import fem_reference
 
+    if problem.ball is not None:
+        raise ValueError(
+            "the elements solve contacts that are not round with a rigid indenter alone; leave out its "
+            "elastic solid, or use the semi-analytical method alone"
+        )
     start = _shape_by_patches(problem)
     given = {name: value for name, value in keywords(problem).items() if name != "ball"}
     return fem_reference.solve_shape(start=start.pressure, **given, **numerics)
