@@ -158,9 +158,10 @@ def _warnings(case: Case, film: int, curve: IndentationCurve, fit: FilmFit) -> l
     if fit.peak == fit.peak:
         found += beyond_limits(fit.peak, case.limits)
     if fit.correlation > 0.5:
+        more = ", or fit the first contact by --zero" if fit.kind == "depth" and not fit.zero else ""
         found.append(
             f"the residuals follow each other (correlation {fit.correlation:.2f}): the model misses the "
-            "curve's course; choose elastic rows by --depths, look at --plot, or fit first contact by --zero"
+            f"curve's course; look at --plot, choose elastic rows by --depths{more}"
         )
     if not fit.determined:
         found.append("press until the contact is about as wide as the film is thick, or measure more rows")
