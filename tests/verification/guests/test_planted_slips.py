@@ -115,6 +115,7 @@ XY = {"sigma_xx": "sigma_yy", "sigma_yy": "sigma_xx", "sigma_xz": "sigma_yz", "s
 VOIGT = {"sigma_yz": "sigma_xy", "sigma_xz": "sigma_yz", "sigma_xy": "sigma_xz"}
 OUTPUT = {
     "transposed": (renamed(XY | {"u_x": "u_y", "u_y": "u_x"}), "x and y transposed"),
+    "transposed stress": (renamed(XY), "in the stresses alone"),
     "averaged": (sides(lambda up, low: ((up + low) / 2, (up + low) / 2)), "mean of both sides"),
     "layer ignored": (sides(lambda up, low: (up, up)), "layer ignored"),
     "other layer": (sides(lambda up, low: (low, up)), "other layer"),

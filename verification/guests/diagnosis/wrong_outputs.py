@@ -56,7 +56,10 @@ def wrong_outputs(exact: Values, given: Values, places: Places) -> Iterator[Wron
     """In the order in which they act: components and sides, signs, units, single numbers."""
     lines = {line for _, line in given}
     stressed = any(q in STRESSES for q, _ in given)
-    yield WrongOutput("x and y", _transposed, "x and y transposed?")
+    yield WrongOutput("x and y", _transposed((*STRESSES, *DISPLACEMENTS)), "x and y transposed?")
+    if stressed and any(q in DISPLACEMENTS for q, _ in given):
+        text = "x and y transposed, in the stresses alone?"
+        yield WrongOutput("x and y of stresses", _transposed(tuple(STRESSES)), text)
     if any("side" in line for line in lines):
         yield WrongOutput(
             "other side",
@@ -142,15 +145,16 @@ def _reordered(names: tuple[str, ...], order: tuple[str, ...]) -> Callable[[Valu
     return change
 
 
-def _transposed(values: Values) -> Values:
+def _transposed(quantities: tuple[str, ...]) -> Callable[[Values], Values]:
+    """Each of ``quantities`` with the values of that with x for y; the largest tension is another one."""
     swap = str.maketrans("xy", "yx")
-    names = [q for q in (*STRESSES, *DISPLACEMENTS) if q.translate(swap) != q]
+    names = [q for q in quantities if q.translate(swap) != q]
     order = [
         f"sigma_{''.join(sorted(q[6:].translate(swap)))}" if q in STRESSES else q.translate(swap)
         for q in names
     ]
-    found = _reordered(tuple(names), tuple(order))(values)
-    return _scaled((), 1.0, PEAKS)(found)
+    reordered = _reordered(tuple(names), tuple(order))
+    return lambda values: _scaled((), 1.0, PEAKS)(reordered(values))
 
 
 def _sides(of: Callable[[Array, Array], Array], only: str = "") -> Callable[[Values], Values]:
