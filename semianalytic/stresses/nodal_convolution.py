@@ -15,11 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
+from semianalytic import numbers
+
 Array = NDArray[Any]
 Influence = Callable[[Array, Array], Array]  # of integer offsets (m, n), each (k,) -> (components, k)
-
-PAIRS = 200_000  # points times forces, or offsets, held at a time
-FEW = 32  # sites for which direct summation is faster than Fourier transforms
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,12 +85,12 @@ def at_points(
 
     Term by term for a few points; for many on the lattice, then between its sites with ``order`` of them.
     """
-    if x.size > 2 * FEW:
+    if x.size > 2 * numbers.FEW_SITES:
         dx, dy = lattice.dx, lattice.dy
         return between_sites(x, y, lattice, lambda m, n: kernel(m * dx, n * dy), odd_in_y, order=order)
     i, j = np.nonzero(lattice.force)
     X, Y, force = lattice.x0 + i * lattice.dx, lattice.y0 + j * lattice.dy, lattice.force[i, j]
-    step = max(1, PAIRS // max(force.size, 1))
+    step = max(1, 16 * numbers.CACHE // max(force.size, 1))
     parts = []
     for begin in range(0, x.size, step):
         xs, ys = x[begin : begin + step, None], y[begin : begin + step, None]
@@ -134,7 +133,7 @@ def _at_sites(sites: Array, lattice: Lattice, influence: Influence, odd_in_y: Se
     m = np.arange(low[0] - (force.shape[0] - 1), high[0] + 1)
     n = np.arange(low[1] - (force.shape[1] - 1), high[1] + 1)
     table = influence_table(influence, m, n, odd_in_y)
-    if sites.shape[1] <= FEW:
+    if sites.shape[1] <= numbers.FEW_SITES:
         out = np.empty((len(table), sites.shape[1]))
         flipped = force[::-1, ::-1]
         for c, (i, j) in enumerate((sites - low[:, None]).T):
@@ -150,7 +149,7 @@ def influence_table(influence: Influence, m: Array, n: Array, odd_in_y: Sequence
     """Influence at the offsets m x n, computed for n >= 0 and mirrored; (components, len(m), len(n))."""
     distinct, where = np.unique(np.abs(n), return_inverse=True)
     mm, nn = np.meshgrid(m, distinct, indexing="ij")
-    rows = max(1, PAIRS // distinct.size)
+    rows = max(1, 16 * numbers.CACHE // distinct.size)
     blocks = [
         influence(a.ravel(), b.ravel()).reshape(-1, *a.shape)
         for a, b in ((mm[i : i + rows], nn[i : i + rows]) for i in range(0, m.size, rows))

@@ -6,6 +6,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 import semianalytic
+from semianalytic import numbers
 from semianalytic.coefficients import influence
 from semianalytic.edge import smooth_edge
 from semianalytic.edge.edge_shape import EVEN, FULL, ROUND, Shape
@@ -73,7 +74,7 @@ def hertz(n, quarter, semi_axes=(1.0, 1.0), harmonics=EVEN):
         return influence.surface_coefficients(m, side, body, Numerics())
 
     deflection = convolution.even_convolution(coefficients(n, grid.d), quarter=quarter)
-    near, parts = smooth_edge.NEAR, smooth_edge.PARTS
+    near, parts = numbers.NEAR_PARTS, numbers.PARTS
     influences = coefficients(near + 2, grid.d), coefficients((near + 1) * parts, grid.d / parts)
     edge = smooth_edge.edge_patches(shape, p, grid, grid.window)
     u, missing = smooth_edge.beyond_centres(
