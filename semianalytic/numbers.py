@@ -9,6 +9,8 @@ problems), "bench" for ``python tests/tools bench`` (time), else a file under ``
 # Sides of a patch beyond which a series replaces the closed form; where their errors cross.
 # [test_halfspace]
 FAR_SIDES = 25.0
+# Floor of squared lengths: infinities at the edges of patches become finite, alike on both sides. [rounding]
+TINY = 1e-100
 # Points of the logarithmic grid of Hankel transforms, usual and long, and the ratio of its ends, usual:
 # more points cost time, a longer grid holds films that stretch over more than 1e4 of their scale.
 # [test_hankel]
@@ -69,8 +71,8 @@ LONG = 8.0
 # Patches across a contact, by which the rough grid tells its width, and fewer than which are no answer.
 # [test_long_contacts]
 NARROW_WIDTH, RESOLVED_WIDTH = 4, 12
-# Patches a side of the next grid over the last, where the accuracy asked is not met, and the box that tests the
-# domain over the box in use. [problems]
+# Patches a side of the next grid over the last, where the accuracy asked is not met, and the box that tests
+# the domain over the box in use. [problems]
 FINER = 1.4
 # Patches a side of the last for ``accuracy``, where refining no longer helps, and of contacts that are no
 # disc or at neighbouring loads: time and memory. [bench]

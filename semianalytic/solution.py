@@ -1,8 +1,7 @@
 """Solution of the semi-analytical method.
 
-A ``Solution`` carries its coarser companion, the same problem on fewer patches. The uncertainty of a field
-is estimated from the difference of the two at the points required, widened so that a chance agreement of
-the two does not count as accuracy.
+A ``Solution`` carries its coarser companions, the same problem on fewer patches; from their changes, and a
+term for each other cause, follows its uncertainty (``uncertainty``).
 """
 
 import time
@@ -314,11 +313,11 @@ class Solution:
         """The uncertainty of a field in one layer of a body, made at its first use."""
         key = quantity, body, layer
         if key not in self._tables:
-            ends = [0.0, *np.cumsum(self._body.named(body).thickness), np.inf][layer : layer + 2]
-            if quantity == "pressure":
-                ends = [0.0, 0.0]
+            solid, sliding = self._body.named(body), bool(self._body.friction)
+            interfaces = [0.0, *np.cumsum(solid.thickness), np.inf]
+            top, bottom = (0.0, 0.0) if quantity == "pressure" else interfaces[layer : layer + 2]
             of = partial(self._of_all_levels, quantity, body, layer=layer if quantity == "stress" else None)
-            self._tables[key] = ChangeTable.of(self._levels, of, *ends, turning=bool(self._body.friction))
+            self._tables[key] = ChangeTable.of(self._levels, of, top, bottom, sliding)
         return self._tables[key]
 
     @cached_property

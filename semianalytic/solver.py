@@ -69,9 +69,9 @@ def solve(
     edge_correction : for the square root of the pressure at the edge (``edge_correction``). False : constant
     patches alone, whose edge is a staircase.
     accuracy : relative uncertainty of contact radius, approach and peak pressure, for which the patches are
-    refined beyond ``patches`` to at most 2801 a side, 1401 where that stops helping, and until what is
-    stated of the pressure next to the edge, at the same x/a, is at most eight times as much of its peak; the
-    solution states what it reached. None : no refinement.
+    refined beyond ``patches`` to at most 2801 a side, 1401 where that stops helping, and until the
+    pressure, at the same x/a, changes by no more than as much of its peak; the solution states what it
+    reached. None : no refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
     indenter : another shape than a sphere, (name, numbers [m]) as in ``indenter_profile``, pressed as by
     ``indent`` over a square that is found; refined to at most 513 patches a side, where

@@ -19,8 +19,6 @@ from semianalytic import numbers
 
 Array = NDArray[np.floating]
 
-TINY = 1e-100  # floor of squared lengths: real infinities (edges at z = 0) become finite, alike on both sides
-
 
 def surface_deflection(n: int, d: float, depth: float = 0.0) -> Array:
     """Potential V of a square of side d at the centres of a grid of squares.
@@ -68,7 +66,7 @@ def _potential_series(x: Array, y: Array, z: float, a: float) -> Array:
 
 def _potential_corner(X: Array, Y: Array, z: float) -> Array:
     """V."""
-    sx, sy = np.maximum(X * X + z * z, TINY), np.maximum(Y * Y + z * z, TINY)
-    rho = np.sqrt(np.maximum(sx + Y * Y, TINY))
+    sx, sy = np.maximum(X * X + z * z, numbers.TINY), np.maximum(Y * Y + z * z, numbers.TINY)
+    rho = np.sqrt(np.maximum(sx + Y * Y, numbers.TINY))
     V: Array = X * np.asinh(Y / np.sqrt(sx)) + Y * np.asinh(X / np.sqrt(sy)) - z * np.atan2(X * Y, z * rho)
     return V
