@@ -161,8 +161,8 @@ ORDER, ORDER_ALONE = 2.0, 1.5
 NEIGHBOURHOOD, LEAST_NEIGHBOURHOOD = 0.5, 2.0
 # Of a patch, by which a smooth edge between the centres of patches is uncertain. [problems]
 WITHIN = 2e-4
-# Patches between centre and edge, below which an edge is no better known than a staircase: a film of 0.1 a on
-# 15 patches was off by 0.2 of one. [test_semianalytic_solver]
+# Patches between centre and edge, below which an edge on a film within ``NARROW_EDGE`` patches is no better
+# known than a staircase: on 15 patches it was off by 0.2 of one. [test_semianalytic_solver]
 FEW_FOR_EDGE = 24
 # Distances from the edge at which changes of a field are sampled, and depth in contact radii. [problems]
 TABLE, DEEPEST = 16, 8.0

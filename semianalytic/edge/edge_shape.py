@@ -69,7 +69,7 @@ class Shape:
         area = self.axes[0] * self.axes[1]
         if self.contour.any():
             area *= float(
-                np.mean(self.reach(2 * np.pi * np.arange(2 * numbers.AROUND) / 2 * numbers.AROUND) ** 2)
+                np.mean(self.reach(2 * np.pi * np.arange(2 * numbers.AROUND) / (2 * numbers.AROUND)) ** 2)
             )
         return float(np.sqrt(2 * area if self.twin else area))
 

@@ -72,13 +72,15 @@ class Level:
     @property
     def edge_error(self) -> float:
         """Error of the radius [m] on this grid: of a smooth edge ``WITHIN`` of a patch, and what its
-        rounds leave; on few patches no less than of a staircase.
+        rounds leave; of few patches, on a film of few, no less than a staircase.
 
         Of patches alone a quarter of a patch all along the edge, whose length is that of the staircase times
         pi/4, its mean over all directions (Cauchy-Crofton).
         """
         if self.shape is not None:
-            few = min(self.shape.axes) < numbers.FEW_FOR_EDGE * self.grid.d
+            patch = self.grid.d / min(self.shape.axes)
+            thin = self.shape.layer < numbers.LAYER * numbers.NARROW_EDGE * patch
+            few = thin and patch * numbers.FEW_FOR_EDGE > 1
             return self.unsettled + (0.25 if few else numbers.WITHIN) * self.grid.d
         d, loaded = self.grid.d, self.grid.whole(self.found.pressure) > 0
         touching = replace(self.grid, quarter=False).ringed(loaded)

@@ -17,9 +17,8 @@ import numpy as np
 from verification.cases.case_file import parse_case
 from verification.cases.random_problems import draw
 from verification.commands.common.command_error import CommandError
-from verification.commands.common.exit_codes import with_exit_code
 from verification.commands.common.shared_options import Flag, Quiet
-from verification.commands.common.terminal import named_table, print_out
+from verification.commands.common.terminal import named_table, print_out, with_exit_code
 from verification.running.case_result import CaseResult
 from verification.running.contact_run import judge_case, solve_case
 from verification.running.provenance import fingerprint
