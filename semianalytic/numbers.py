@@ -104,8 +104,8 @@ RIPPLE = 3e-4
 # Polynomials of an uncoated body; of a layer, the second for each of asinh(1/e); near the edge alone.
 # [problems]
 FEWEST_TERMS, LAYERED, OUTER_TERMS = 3, (6.0, 4.6), 6
-# Patches in a of the coarsest of three default grids, beyond which one 1.4 times as fine has a polynomial more,
-# so that the change on refining holds what they leave out; polynomials for each sqrt(patches in a times
+# Patches in a of the coarsest of three default grids, beyond which one 1.4 times as fine has a polynomial
+# more, so that the change on refining holds what they leave out; polynomials for each sqrt(patches in a times
 # e asinh(1/e)), where 2 did not converge under stacks. [problems]
 USUAL_RADIUS, RESOLVED_TERMS = 57, 1.75
 # e over h/a: 4 is best for one coating, 8 for a stack; and e beyond which a layer does not matter.

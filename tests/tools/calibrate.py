@@ -13,9 +13,9 @@ from importlib import import_module
 from pathlib import Path
 
 import numpy as np
+from verification.cases.random_problems import draw
 
 from verification.cases.case_file import parse_case
-from verification.cases.random_problems import draw
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.shared_options import Flag, Quiet
 from verification.commands.common.terminal import named_table, print_out, with_exit_code
