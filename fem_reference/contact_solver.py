@@ -11,19 +11,14 @@ from itertools import pairwise
 
 import numpy as np
 
+from fem_reference import element_numbers as chosen
 from fem_reference.contact.fixed_radius import complementarity
-from fem_reference.contact.levels import (
-    NotConverged,
-    companion_grading,
-    final_grading,
-    meshes_at,
-    solve_levels,
-)
+from fem_reference.contact.levels import NotConverged, family, meshes_at, solve_levels
 from fem_reference.elasticity.axisymmetric import Discretisation
 from fem_reference.elasticity.loading import solve_traction
 from fem_reference.elasticity.recovery import HarmonicField
 from fem_reference.elasticity.state import ElasticState
-from fem_reference.estimate import Estimates, contact_estimates, estimates
+from fem_reference.estimate import Estimates, contact_estimates, estimates, of_scalar
 from fem_reference.meshing.mesh import Grading
 from fem_reference.scaling import Coatings, LayeredSolid, Units
 from fem_reference.solved_contact import Diagnostics, Solution
@@ -38,15 +33,6 @@ from fem_reference.validation import (
 )
 
 Ball = tuple[float, float, Coatings]
-
-# Triangle size over its distance from the contact edge.
-QUALITY = {"fast": 0.27, "default": 0.15, "fine": 0.1}
-# The same where a layer is stiffer than the next below by more than this factor: it bends like a plate, whose
-# stresses exceed the pressure. Under a compliant layer errors are below those of bare steel at the same size.
-CONTRASTS = {
-    10.0: {"fast": 0.17, "default": 0.12, "fine": 0.1},
-    100.0: {"fast": 0.15, "default": 0.1, "fine": 0.085},
-}
 
 
 def solve(
@@ -100,18 +86,19 @@ def solve(
         check_proportions(solids[1].thicknesses, "a_h", "the ball's ")
     target = load / unit.load
 
-    final, companion, history = solve_levels(
+    contacts, history = solve_levels(
         solids,
         target,
         order=order,
         size=size,
-        with_companion=estimate_uncertainty,
+        meshes=3 if estimate_uncertainty else 1,
         curvature=a_h / radius if gap == "sphere" else 0.0,
     )
+    final = contacts[0]
     d = final.discretisation
     check_radius(final.contact_radius * a_h, radius)
     penetration, tension = complementarity(final)
-    if not (0 <= penetration <= 1e-3 and 0 <= tension <= 1e-3):  # also true of NaN and -inf
+    if not all(0 <= part <= chosen.NO_DISC for part in (penetration, tension)):  # also true of NaN, -inf
         raise NotConverged(
             f"the contact is not one disc: penetration outside is {penetration:.2g} of the approach, tension "
             f"inside {tension:.2g} of the peak pressure; use quality='fine', or check the Poisson ratios"
@@ -122,8 +109,8 @@ def solve(
     states = tuple(ElasticState.of_contact(solid, final, body) for solid, body in pairs)
     found: tuple[Estimates, ...] = ()
     stiffness_error = None
-    if companion:
-        found, stiffness_error = contact_estimates(final, companion, states, unit, size)
+    if estimate_uncertainty:
+        found, stiffness_error = contact_estimates(contacts, states, unit)
     frictionless = Solution(
         contact_radius=final.contact_radius * unit.length,
         approach=final.approach * unit.displacement,
@@ -183,12 +170,11 @@ def solve_prescribed(
         fields = solve_traction(d, solid, 0, p)
         return ElasticState(solid, HarmonicField(d, fields, solid.materials, 0, p, -1.0, False), None)
 
-    state = state_on(final_grading(size))
+    state, *coarser = map(state_on, family(size)[: 3 if estimate_uncertainty else 1])
     found: tuple[Estimates, ...] = ()
     if estimate_uncertainty:
-        companion = state_on(companion_grading(size))
-        change = abs(state.central_displacement - companion.central_displacement)
-        found = estimates((state,), (companion,), unit, (0.0, change), 0.0, 0.0, size)
+        approach = of_scalar([one.central_displacement for one in (state, *coarser)], order + 1)
+        found = estimates((state,), (tuple(coarser),), unit, approach)
     d = state.discretisation
     nodes = _surface_nodes(d)
     frictionless = Solution(
@@ -213,15 +199,18 @@ def solve_prescribed(
 
 def _size(quality: str, size: float | None, bodies: Sequence[Sequence[tuple[float, ...]]]) -> float:
     """The size asked for; ``bodies`` : the layers of each, (E, ...) from the surface down."""
-    check_choice("quality", quality, tuple(QUALITY))
+    check_choice("quality", quality, tuple(chosen.QUALITY))
     if size is None:
         steps = [upper[0] / lower[0] for layers in bodies for upper, lower in pairwise(layers)]
         largest = max(steps, default=1.0)
-        sizes = [QUALITY, *(finer for least, finer in CONTRASTS.items() if largest > least)]
+        sizes = [chosen.QUALITY, *(finer for least, finer in chosen.CONTRASTS.items() if largest > least)]
         return min(one[quality] for one in sizes)
     check_positive(size=size)
-    if not 0.08 <= size <= 0.5:
-        raise ValueError(f"size = {size:g}; choose it between 0.08 (a minute, gigabytes) and 0.5 (coarse)")
+    if not chosen.SMALLEST_SIZE <= size <= chosen.LARGEST_SIZE:
+        raise ValueError(
+            f"size = {size:g}; choose it between {chosen.SMALLEST_SIZE} (a minute, gigabytes) and "
+            f"{chosen.LARGEST_SIZE} (coarse)"
+        )
     return size
 
 

@@ -1,5 +1,6 @@
 """Points at which a solution is asked, and the answer: a value with its uncertainty."""
 
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,6 +31,16 @@ class ElementAnswer(NamedTuple):
 
     value: Any
     uncertainty: Any = None
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Absolute numerical uncertainty in SI units; ``budget`` has rows (quantity, origin, value)."""
+
+    contact_radius: float
+    approach: float
+    peak_pressure: float
+    budget: tuple[tuple[str, str, float], ...]
 
 
 class PlainFields:

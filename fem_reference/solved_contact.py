@@ -6,14 +6,13 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from fem_reference import element_numbers as chosen
 from fem_reference.elasticity.state import ElasticState
-from fem_reference.element_answer import ElementAnswer, PlainFields
-from fem_reference.estimate import Estimates, Uncertainty
+from fem_reference.element_answer import ElementAnswer, PlainFields, Uncertainty
+from fem_reference.estimate import Estimates
 from fem_reference.meshing.location import SolidPoints, solid_points
 from fem_reference.scaling import Units
 from fem_reference.validation import check_friction
-
-AT_SINGULAR = 1e-8  # distance from a singular radius over that of the load
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -102,7 +101,7 @@ class Solution(PlainFields):
         """The companion by which the errors were estimated, without estimates; None where there is none."""
         if not self.estimates:
             return None
-        states = tuple(estimate.companion for estimate in self.estimates)
+        states = tuple(estimate.coarser[0] for estimate in self.estimates)
         approach = sum(state.central_displacement for state in states)
         return replace(
             self,
@@ -131,9 +130,10 @@ class Solution(PlainFields):
             number = self._number(points.body)
             locator = self.states[number].discretisation.locator
             at = solid_points(locator, self.units.length, points.x, points.y, points.z, points.layer)
+            found = self._field(at, number, quantity, stated)
             if quantity == "displacement":
-                return self._displacement(at, number, stated)
-            return self._regular(self._stress(at, number, stated), points.x, points.y, points.z)
+                return found
+            return self._regular(found, points.x, points.y, points.z)
         if quantity == "stiffness":
             return ElementAnswer(self.stiffness, self.stiffness_uncertainty if stated else None)
         if quantity in ("contact_radius", "approach", "peak_pressure"):
@@ -147,31 +147,23 @@ class Solution(PlainFields):
         p = self.state.pressure(r) * self.units.pressure
         return ElementAnswer(p, self.estimates[0].pressure(r) * self.units.pressure if stated else None)
 
-    def _stress(self, points: SolidPoints, number: int, stated: bool) -> ElementAnswer:
-        _, sigma = self.states[number](points)
-        shape, unit = (3, 3, *points.shape), self.units.pressure
-        value = tensor(sigma * unit, points.cos, points.sin).reshape(shape)
+    def _field(self, points: SolidPoints, number: int, quantity: str, stated: bool) -> ElementAnswer:
+        """Stress or displacement of a body, with its uncertainty where ``stated``."""
+        stress, cos, sin = quantity == "stress", np.abs(points.cos), np.abs(points.sin)
+        turn, shape = (tensor, (3, 3)) if stress else (cartesian, (3,))
+        unit = self.units.pressure if stress else self.units.displacement
+        amplitudes = self.states[number](points)[stress]
+        value = turn(amplitudes, points.cos, points.sin).reshape(*shape, *points.shape) * unit
         if not stated:
             return ElementAnswer(value)
-        estimates, cos, sin = self.estimates[number], np.abs(points.cos), np.abs(points.sin)
-        error = estimates.normal(points.located)
-        if estimates.tangential is not None:
-            error = error + estimates.tangential(points.located) * np.stack([cos] * 4 + [sin] * 2)
+        found, at = self.estimates[number], points.located
+        error, *sliding = (
+            one(at) if stress else one.displacement(at) for one in (found.normal, found.tangential) if one
+        )
+        for more in sliding:
+            error = error + more * np.stack([cos] * 4 + [sin] * 2 if stress else [cos, sin, cos])
         # absolute values of all products in the rotation add up
-        return ElementAnswer(value, tensor(error * unit, cos, sin, sign=1.0).reshape(shape))
-
-    def _displacement(self, points: SolidPoints, number: int, stated: bool) -> ElementAnswer:
-        u, _ = self.states[number](points)
-        shape, unit = (3, *points.shape), self.units.displacement
-        value = cartesian(u, points.cos, points.sin).reshape(shape) * unit
-        if not stated:
-            return ElementAnswer(value)
-        estimates, cos, sin = self.estimates[number], np.abs(points.cos), np.abs(points.sin)
-        error = estimates.normal.displacement(points.located)
-        if estimates.tangential is not None:
-            error = error + estimates.tangential.displacement(points.located) * np.stack([cos, sin, cos])
-        U = np.stack([error[0] * cos + error[1] * sin, error[0] * sin + error[1] * cos, error[2]])
-        return ElementAnswer(value, U.reshape(shape) * unit)
+        return ElementAnswer(value, turn(error, cos, sin, sign=1.0).reshape(value.shape) * unit)
 
     def _regular(self, answer: ElementAnswer, x: Any, y: Any, z: Any) -> ElementAnswer:
         """``answer``, or NaN at points closer to ``singular_radii`` than can be told apart from them."""
@@ -179,7 +171,7 @@ class Solution(PlainFields):
             return answer
         r, z = np.broadcast_arrays(np.hypot(x, y), np.asarray(z, dtype=float))
         away = np.min([np.hypot(r - one, z) for one in self.singular_radii], axis=0)
-        at = away <= AT_SINGULAR * self.contact_radius
+        at = away <= chosen.AT_SINGULAR * self.contact_radius
         return ElementAnswer(*(None if part is None else np.where(at, np.nan, part) for part in answer))
 
     def _number(self, body: str) -> int:
@@ -189,9 +181,9 @@ class Solution(PlainFields):
         return known.index(body)
 
 
-def cartesian(u: np.ndarray, cos: np.ndarray, sin: np.ndarray) -> np.ndarray:
-    """Turn (u_r, u_theta, u_z) to x, y, z."""
-    return np.stack([u[0] * cos - u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
+def cartesian(u: np.ndarray, cos: np.ndarray, sin: np.ndarray, sign: float = -1.0) -> np.ndarray:
+    """Turn (u_r, u_theta, u_z) to x, y, z; ``sign`` = 1 adds where a rotation subtracts."""
+    return np.stack([u[0] * cos + sign * u[1] * sin, u[0] * sin + u[1] * cos, u[2]])
 
 
 def tensor(s: np.ndarray, cos: np.ndarray, sin: np.ndarray, sign: float = -1.0) -> np.ndarray:

@@ -6,14 +6,8 @@ from functools import partial
 
 import numpy as np
 
+from fem_reference import element_numbers as chosen
 from fem_reference.elasticity.line_quadrature import gauss_legendre
-
-MAX_COATINGS = 50
-MAX_CONTRAST = 1e9
-MIN_THICKNESS = 1e-4
-MAX_THICKNESS = 1e4
-LARGEST_RADIUS = 0.9  # of the contact over that of the sphere
-STEP = 1e-4  # of a given pressure at one radius, over its mean magnitude: what is less is no jump
 
 
 def check_positive(**quantities: float) -> None:
@@ -45,9 +39,9 @@ def check_materials(
     check_friction(friction)
     if not isinstance(coatings, Sequence) or isinstance(coatings, str):
         raise ValueError(f"coatings = {coatings!r}; give a tuple of (E, nu, thickness), () for none")
-    if len(coatings) > MAX_COATINGS:
+    if len(coatings) > chosen.MAX_COATINGS:
         raise ValueError(
-            f"{len(coatings)} coatings; at most {MAX_COATINGS} can be meshed, merge thin ones into one"
+            f"{len(coatings)} coatings; at most {chosen.MAX_COATINGS} can be meshed, merge thin ones into one"
         )
     if not isinstance(substrate, Sequence) or len(substrate) != 2:
         raise ValueError(f"substrate = {substrate!r}; give (E, nu)")
@@ -57,10 +51,10 @@ def check_materials(
         _check_material(f"of coating {k}", coating[0], coating[1])
         check_positive(**{f"thickness of coating {k}": coating[2]})
         contrast = coating[0] / substrate[0] if _is_number(substrate[0]) and substrate[0] > 0 else 1.0
-        if not 1 / MAX_CONTRAST <= contrast <= MAX_CONTRAST:
+        if not 1 / chosen.MAX_CONTRAST <= contrast <= chosen.MAX_CONTRAST:
             raise ValueError(
                 f"E of coating {k} is {contrast:g} times that of the substrate; the solver supports ratios "
-                f"between {1 / MAX_CONTRAST:g} and {MAX_CONTRAST:g}, change one of the moduli"
+                f"between {1 / chosen.MAX_CONTRAST:g} and {chosen.MAX_CONTRAST:g}, change one of the moduli"
             )
     _check_material("of the substrate", *substrate)
 
@@ -78,21 +72,25 @@ def check_ball(ball: tuple[float, float, Sequence[tuple[float, float, float]]]) 
 def check_proportions(thicknesses: Sequence[float], unit: str, of: str = "") -> None:
     """Raise ValueError for coatings too thin or too thick to mesh beside a contact of radius 1 ``unit``."""
     for k, h in enumerate(thicknesses, start=1):
-        if not MIN_THICKNESS <= h <= MAX_THICKNESS:
-            what = "thin; leave it out" if h < MIN_THICKNESS else "thick; use its material for the substrate"
+        if not chosen.MIN_THICKNESS <= h <= chosen.MAX_THICKNESS:
+            what = (
+                "thin; leave it out"
+                if h < chosen.MIN_THICKNESS
+                else "thick; use its material for the substrate"
+            )
             raise ValueError(
                 f"thickness of {of}coating {k} is {h:.3g} {unit}, too {what}, or keep it between "
-                f"{MIN_THICKNESS:g} and {MAX_THICKNESS:g} {unit}"
+                f"{chosen.MIN_THICKNESS:g} and {chosen.MAX_THICKNESS:g} {unit}"
             )
 
 
 def check_radius(contact_radius: float, radius: float) -> None:
     """Raise ValueError for a contact as wide as the sphere, of which the gap is not a parabola."""
-    if contact_radius > LARGEST_RADIUS * radius:
+    if contact_radius > chosen.LARGEST_RADIUS * radius:
         share = contact_radius / radius
         raise ValueError(
             f"contact radius a = {contact_radius:g} m is {share:.2g} of the sphere's radius; the parabolic "
-            f"gap and small strains hold below {LARGEST_RADIUS:g}, and well below 0.1"
+            f"gap and small strains hold below {chosen.LARGEST_RADIUS:g}, and well below 0.1"
         )
 
 
@@ -115,7 +113,7 @@ class GivenPressure:
     @property
     def singular_radii(self) -> tuple[float, ...]:
         """The rim [m] where the pressure jumps to zero there; () where it does not."""
-        return (self.radius,) if abs(self(np.array([1.0]))[0]) > STEP else ()
+        return (self.radius,) if abs(self(np.array([1.0]))[0]) > chosen.LARGEST_STEP else ()
 
     def check_inside(self) -> None:
         """Raise ValueError where the pressure jumps inside the load, which the mesh is not made for.
@@ -127,7 +125,7 @@ class GivenPressure:
             steps = np.abs(np.diff(self(r)))
             k, step = int(np.argmax(steps)), float(steps.max())
             r = np.linspace(r[k], r[k + 1], 33)
-        if step > STEP:
+        if step > chosen.LARGEST_STEP:
             at = r[-1] * self.radius
             raise ValueError(
                 f"pressure(r) jumps at r = {at:g} m, inside load_radius = {self.radius:g} m; solve two loads "

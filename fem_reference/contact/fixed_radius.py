@@ -31,15 +31,12 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 from scipy.interpolate import PPoly
 
+from fem_reference import element_numbers as chosen
 from fem_reference.elasticity.axisymmetric import Discretisation
 from fem_reference.elasticity.loading import Body, solve_fields, solve_pair
 from fem_reference.elasticity.recovery import edge_distances
-from fem_reference.meshing.mesh import EDGE_SIZE, MeridianMesh
+from fem_reference.meshing.mesh import MeridianMesh
 from fem_reference.scaling import LayeredSolid
-
-# The growth of the contact is fitted this much farther from the edge than stresses: where the displacement of
-# the edge by its last triangles does not count. It is good to 1e-4 on the companion, in place of 5e-3.
-_FARTHER = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +182,7 @@ def solve_at_radius(
     pressure = Multiplier(nodes, values, d.order)
     stiffness = loads[0] / (1 - loads[2])
     punch = Multiplier(nodes, p[:, 0] + stiffness * p[:, 2], d.order)
-    (_, K), (k, _) = (edge_coefficients(one, d.mesh, _FARTHER) for one in (pressure, punch))
+    (_, K), (k, _) = (edge_coefficients(one, d.mesh, chosen.FARTHER) for one in (pressure, punch))
     return FixedRadiusContact(
         discretisation=d,
         fields=u @ combine,
@@ -207,9 +204,9 @@ def edge_coefficients(pressure: Multiplier, mesh: MeridianMesh, farther: float =
     farther : as in `edge_distances`
     """
     distance = edge_distances(mesh, farther)
-    unit = distance[0] * EDGE_SIZE * mesh.contact_radius
+    unit = distance[0] * chosen.EDGE_SIZE * mesh.contact_radius
     terms = (distance / distance[0])[:, None] ** np.array([-0.5, 0.5, 1.5, 2.5])
-    values = pressure(mesh.contact_radius - EDGE_SIZE * mesh.contact_radius * distance)
+    values = pressure(mesh.contact_radius - chosen.EDGE_SIZE * mesh.contact_radius * distance)
     c = np.linalg.lstsq(terms, values, rcond=None)[0]
     return float(c[0] * unit**0.5), float(c[1] / unit**0.5)
 

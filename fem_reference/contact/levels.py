@@ -1,30 +1,19 @@
 """Sequence of mesh levels on which the contact radius is found.
 
-A coarse mesh finds the contact radius approximately. A companion, somewhat coarser than the final mesh, finds
-it closely and is the reference of the error estimate. The final mesh gives the result. A vertex lies at the
-contact radius of every level.
+A coarse mesh finds it approximately, the companion, somewhat coarser than the final mesh, closely. The final
+mesh gives the result; a third mesh of their family, coarser than the companion, is solved at its radius. A
+vertex lies at the contact radius of every mesh.
 """
 
 import math
 from dataclasses import replace
 from typing import NamedTuple
 
+from fem_reference import element_numbers as chosen
 from fem_reference.contact.fixed_radius import FixedRadiusContact, solve_at_radius
 from fem_reference.elasticity.axisymmetric import Discretisation
-from fem_reference.meshing.mesh import EDGE_SIZE, Grading, MeridianMesh, meridian_mesh
+from fem_reference.meshing.mesh import Grading, MeridianMesh, meridian_mesh
 from fem_reference.scaling import LayeredSolid, first_radius
-
-# One row of triangles in a coating: the radius is good to 1e-5, from where the companion takes one solve.
-_COARSE = Grading.of(0.5, rows=1.0)
-# Tolerances of the load. That of the companion counts in the estimate: one solve instead of two. The final
-# mesh meets its own by one solve, then moves with its edge to the load itself.
-_OF_COMPANION, _OF_FINAL = 1e-5, 3e-8
-_MOST_SOLVES = 30  # of the contact on one level
-_STRETCH = 1.3  # largest factor by which radii are stretched before a new mesh is generated
-# Above this Poisson ratio flat triangles in a film lock far from the contact: at 0.4999 the approach erred by
-# 2.4 times its uncertainty until the largest were this share of those of other films.
-_INCOMPRESSIBLE, _NARROWER = 0.495, 0.64
-COMPANION = 1.4  # size of the companion over that of the final mesh
 
 
 class NotConverged(Exception):
@@ -44,28 +33,33 @@ History = list[tuple[str, float, float]]  # level, contact radius, load of every
 
 
 def solve_levels(
-    solids: Solids, load: float, *, order: int, size: float, with_companion: bool, curvature: float = 0.0
-) -> tuple[FixedRadiusContact, FixedRadiusContact | None, History]:
-    """Find the contact radius at ``load``, each level starting from the result of the one before.
+    solids: Solids, load: float, *, order: int, size: float, meshes: int, curvature: float = 0.0
+) -> tuple[tuple[FixedRadiusContact, ...], History]:
+    """Find the contact radius at ``load`` on the first ``meshes`` of a family, one or three.
 
-    Returns the contact on the final mesh, that on the companion if wanted, and every solve.
+    Returns the contact on each, the finest first, and every solve.
 
-    order, size : of the final level.  curvature : of the gap, as in `contact.undeformed_gap`
-    Raises NotConverged when the load is not reached on one of the levels.
+    order, size : of the finest.  curvature : of the gap, as in `contact.undeformed_gap`
+    Raises NotConverged when the load is not reached on one of the meshes.
     """
-    levels = [Level("coarse", _COARSE, 1e-3)]
-    if with_companion:
-        levels.append(Level("companion", companion_grading(size), _OF_COMPANION))
-    levels.append(Level("final", final_grading(size), _OF_FINAL))
+    first = replace(Grading.of(chosen.FIRST_SIZE), rows=chosen.FIRST_ROWS)
+    final, companion, coarsest = family(size)
+    levels = [
+        Level("first", first, chosen.FIRST_LOAD),
+        Level("companion", companion, chosen.COARSE_LOAD),
+        Level("final", final, chosen.FINAL_LOAD),
+        Level("coarsest", coarsest, chosen.COARSE_LOAD),
+    ]
     a = first_radius(solids, load)
     history: History = []
     found: dict[str, FixedRadiusContact] = {}
-    for level in levels:
+    for level in levels if meshes > 1 else levels[::2]:
         contact, solves = find_contact_radius(solids, load, level, a, order, curvature)
         history += solves
         found[level.name] = contact
         a = contact.radius_at(load) + contact.edge_displacement  # which is smaller on the next
-    return found["final"].at_load(load), found.get("companion"), history
+    coarser = [found[level.name] for level in levels[1::2]] if meshes > 1 else []
+    return (found["final"].at_load(load), *coarser), history
 
 
 def find_contact_radius(
@@ -78,7 +72,7 @@ def find_contact_radius(
     some thousandths (``fixed_radius``), converges in a few steps. Small steps stretch the meshes, large ones
     make new ones.
 
-    Returns the last contact and every solve. Raises NotConverged after ``_MOST_SOLVES``, or where the load is
+    Returns the last contact and every solve. Raises NotConverged after ``MOST_SOLVES``, or where the load is
     not a positive number.
     """
     meshes = meshes_at(solids, level.grading, a)
@@ -92,29 +86,26 @@ def find_contact_radius(
         positive = 0 < contact.load < math.inf  # NaN is not
         if positive and abs(math.log(load / contact.load)) <= level.tolerance:
             return contact, solves
-        if not positive or len(solves) >= _MOST_SOLVES:
+        if not positive or len(solves) >= chosen.MOST_SOLVES:
             raise NotConverged(
                 f"the contact radius did not converge on the {level.name} mesh: after {len(solves)} solves, "
                 f"at {a:.4g} a_h, the load is {contact.load / load:.6g} of the required one; check "
                 "the thicknesses and the ratio of the moduli"
             )
         a = contact.radius_at(load)
-        if not 1 / _STRETCH < a / meshes[0].contact_radius < _STRETCH:
+        if not 1 / chosen.STRETCH < a / meshes[0].contact_radius < chosen.STRETCH:
             meshes = meshes_at(solids, level.grading, a)
 
 
-def final_grading(size: float) -> Grading:
-    """Sizes of the final mesh: the largest leave room for a companion coarser by its factor."""
-    return Grading.of(size).limited(1 / COMPANION)
+def family(size: float) -> tuple[Grading, ...]:
+    """Sizes of three meshes in one ratio, ``size`` of the finest first.
 
-
-def companion_grading(size: float) -> Grading:
-    """The companion of ``final_grading(size)``: coarser everywhere, with larger triangles at the edge.
-
-    Far away and in thin coatings too: two meshes that are alike there differ by less than their error.
+    Far away and in thin coatings too: meshes that are alike there differ by less than their error. So the
+    largest sizes of the finest leave room for the next.
     """
-    rows = final_grading(size).rows / COMPANION
-    return Grading.of(COMPANION * size, edge_size=4 * EDGE_SIZE, rows=rows).limited(1.0)
+    finest = Grading.of(size).limited(1 / chosen.COARSER)
+    next_one = finest.coarser()
+    return finest, next_one, next_one.coarser()
 
 
 def meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> tuple[MeridianMesh, ...]:
@@ -124,8 +115,8 @@ def meshes_at(solids: Solids, grading: Grading, contact_radius: float) -> tuple[
     triangles; the search stretches the meshes to its own.
     """
     contact_radius = float(f"{contact_radius:.5g}")
-    if any(nu > _INCOMPRESSIBLE for solid in solids for _, nu in solid.materials):
-        grading = replace(grading, film_size=_NARROWER * grading.film_size)
+    if any(nu > chosen.INCOMPRESSIBLE for solid in solids for _, nu in solid.materials):
+        grading = replace(grading, film_size=chosen.NARROWER * grading.film_size)
     far = max(solid.far for solid in solids)
     stacks = tuple(solid.thicknesses for solid in solids)
     made = {

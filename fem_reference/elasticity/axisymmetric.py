@@ -34,10 +34,10 @@ from skfem import (
     asm,
 )
 
+from fem_reference import element_numbers as chosen
 from fem_reference.meshing.location import Locator, Uncached
 from fem_reference.meshing.mesh import MeridianMesh
 
-_AT_ONCE = 512  # triangles whose matrices are made at once: more take longer, for fresh memory
 ELEMENTS = {2: ElementTriP2, 3: ElementTriP3, 4: ElementTriP4}
 
 
@@ -155,8 +155,8 @@ class Discretisation(Uncached):
         matrix = np.empty((triangles, o.size, o.size))
         extension = np.empty((triangles, i.size, o.size))
         inner, outer = (np.empty((triangles, of.size), dtype=np.int32) for of in (i, o))
-        for begin in range(0, triangles, _AT_ONCE):
-            some = slice(begin, begin + _AT_ONCE)
+        for begin in range(0, triangles, chosen.TRIANGLES_AT_ONCE):
+            some = slice(begin, begin + chosen.TRIANGLES_AT_ONCE)
             K, numbers = self._elements(materials, harmonic, cells[some])
             inner[some], outer[some] = numbers[:, i], numbers[:, o]
             K_io = K[:, i[:, None], o]

@@ -16,12 +16,12 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as sla
 from skfem import condense
 
+from fem_reference import element_numbers as chosen
+
 # Solution for a right-hand side (n,) or several in columns (n, columns).
 Factor = Callable[[np.ndarray], np.ndarray]
 
 _PARDISO = find_spec("pypardiso") is not None
-_COLUMNS = 32  # of many solved at a time: all at once take twice as long, for fresh memory
-_MOST_STEPS = 30  # of conjugate gradients: 8 in most solids, more where moduli differ by a thousand
 
 
 def factorised(matrix: sp.csc_matrix) -> Factor:
@@ -86,7 +86,7 @@ def constrained_solve(
         # iterations cost more than that. To rounding, since forces next to the edge are small.
         rough = factorised(A.astype(np.float32))
         M = sla.LinearOperator(A.shape, rough, dtype=float)
-        u[free], failed = sla.cg(A, b, rough(b), rtol=1e-15, maxiter=_MOST_STEPS, M=M)
+        u[free], failed = sla.cg(A, b, rough(b), rtol=1e-15, maxiter=chosen.MOST_STEPS, M=M)
     if failed:
         factor = factorised(A)
         found = factor(b)
@@ -129,8 +129,8 @@ class ConstrainedFactor:
         held, times = np.zeros((self.free.size, 1)), np.zeros(load.shape[1])
         if given is not None:
             held, times = (self.K @ given[0])[self.free, None], given[1]
-        for begin in range(0, load.shape[1], _COLUMNS):
-            some = slice(begin, begin + _COLUMNS)
+        for begin in range(0, load.shape[1], chosen.COLUMNS_AT_ONCE):
+            some = slice(begin, begin + chosen.COLUMNS_AT_ONCE)
             force = np.asfortranarray(-held * times[some])
             force[row[row >= 0]] += load[row >= 0, some]
             u[:, some] = self.factor(force)

@@ -23,13 +23,11 @@ from functools import cached_property
 
 import numpy as np
 
+from fem_reference import element_numbers as chosen
 from fem_reference.elasticity.axisymmetric import Discretisation, elasticity, strain_operator
 from fem_reference.meshing.location import LocatedPoints
-from fem_reference.meshing.mesh import EDGE_SIZE, MeridianMesh
+from fem_reference.meshing.mesh import MeridianMesh
 
-# Distances from the edge over EDGE_SIZE times the radius: the series replaces the strains below the first
-# and is fitted from there to the second.
-EDGE_SERIES = 20.0, 5000.0
 # A displaced edge adds the power -1/2, which is fitted and left out.
 _POWERS = np.array([-0.5, 0.5, 1.0, 1.5, 2.0])
 
@@ -43,9 +41,9 @@ def edge_distances(mesh: MeridianMesh, farther: float = 1.0) -> np.ndarray:
 
     Those of ``EDGE_SERIES``, times ``farther``; far below the thickness of a film on the surface.
     """
-    smallest, largest = EDGE_SERIES
+    smallest, largest = chosen.EDGE_SERIES
     thickness = (mesh.length / mesh.contact_radius) ** 2  # of the thinnest film on top, over a
-    end = max(min(farther * largest, 0.05 * thickness / EDGE_SIZE), 5 * smallest)
+    end = max(min(farther * largest, 0.05 * thickness / chosen.EDGE_SIZE), 5 * smallest)
     return np.geomspace(max(smallest, end * smallest / largest), end, 32)
 
 
@@ -115,8 +113,8 @@ class HarmonicField:
         """Coefficients (1 + 2 powers, strains) of the surface strains: edge value, powers inside, outside."""
         d = self.discretisation
         a = d.mesh.contact_radius
-        distance = edge_distances(d.mesh) / EDGE_SERIES[0]
-        r = a + a * EDGE_SIZE * EDGE_SERIES[0] * np.concatenate([-distance, distance])
+        distance = edge_distances(d.mesh) / chosen.EDGE_SERIES[0]
+        r = a + a * chosen.EDGE_SIZE * chosen.EDGE_SERIES[0] * np.concatenate([-distance, distance])
         zero = np.zeros(r.size, dtype=int)
         _, strain = self._fields_and_strains(d.locator.points(r, 0.0 * r, zero))
         powers = distance[:, None] ** _POWERS
@@ -127,7 +125,7 @@ class HarmonicField:
     def _with_series(self, r: np.ndarray, strain: np.ndarray) -> np.ndarray:
         """Surface strains (strains, n), the derivatives among them from the series next to the edge."""
         a = self.discretisation.mesh.contact_radius
-        offset = (r / a - 1) / (EDGE_SIZE * EDGE_SERIES[0])
+        offset = (r / a - 1) / (chosen.EDGE_SIZE * chosen.EDGE_SERIES[0])
         near = np.abs(offset) < 1
         if not (self.root_at_edge and np.any(near)):
             return strain

@@ -12,12 +12,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 from skfem import Basis
 
+from fem_reference import element_numbers as chosen
 from fem_reference.meshing.mesh import MeridianMesh
-
-# Triangles whose centroids are nearest: most points lie within one of a few, those on edges need more.
-_NEAREST, _NEIGHBOURS = 4, 12
-# Smallest radius over the contact radius: u/r on the axis is the limit from outside, exact to its square.
-_AXIS = 1e-7
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +28,7 @@ class Uncached:
 class LocatedPoints:
     """Points of shape (n,) in their triangles.
 
-    r_given : radii as given.  r : at least ``_AXIS`` contact radii.  z : on interfaces exactly.
+    r_given : radii as given.  r : at least ``AXIS_RADIUS`` contact radii.  z : on interfaces exactly.
     layer : layer of each point.  cells : triangle of (r, z).  X : its reference coordinates, (2, n).
     """
 
@@ -96,7 +92,7 @@ class Locator:
 
     def points(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> LocatedPoints:
         """The points (r, z) of shape (n,) with their triangles inside ``layer``."""
-        near = np.maximum(r, _AXIS * self.mesh.contact_radius)
+        near = np.maximum(r, chosen.AXIS_RADIUS * self.mesh.contact_radius)
         return LocatedPoints(self, r, near, z, layer, *self.triangles(near, z, layer))
 
     def triangles(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -105,7 +101,7 @@ class Locator:
         cells = np.zeros(r.shape, dtype=int)
         for k, (members, tree) in enumerate(self._trees):
             mine = np.flatnonzero(layer == k)
-            count = min(_NEAREST, members.size)
+            count = min(chosen.NEAREST, members.size)
             while mine.size:
                 _, near = tree.query(mesh.plane(r[mine], z[mine]).T, k=count)
                 candidates = members[near.reshape(mine.size, -1)]
@@ -113,10 +109,10 @@ class Locator:
                 inside = np.min([X[0], X[1], 1 - X[0] - X[1]], axis=0)
                 best = np.argmax(inside, axis=1)
                 cells[mine] = candidates[np.arange(mine.size), best]
-                done = inside[np.arange(mine.size), best] > (1e-9 if count < _NEIGHBOURS else -1e-9)
+                done = inside[np.arange(mine.size), best] > (1e-9 if count < chosen.NEIGHBOURS else -1e-9)
                 if count == members.size:
                     break
-                mine, count = mine[~done], min(max(_NEIGHBOURS, 4 * count), members.size)
+                mine, count = mine[~done], min(max(chosen.NEIGHBOURS, 4 * count), members.size)
         return cells, _reference_coordinates(mesh.points, t[:, cells], r, z)
 
 

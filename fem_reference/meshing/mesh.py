@@ -18,25 +18,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from fem_reference import element_numbers as chosen
 from fem_reference.meshing.gmsh_session import session
-
-EDGE_SIZE = 1e-7  # smallest triangle, at the contact edge, over the contact radius
-# Size of a triangle in the fan over edge_rate: this power of its distance from the edge. What the innermost
-# triangles miss counts as the root of the distance.
-_FAN = 0.94
-# Sizes are uniform to this depth over the contact radius, then grow by this share a unit of the stretched
-# plane; to that of all coatings, then more slowly, since a stack bends beyond its own depth.
-_NEAR, _GROWTH = 2.0, 0.6
-# Films buried at many times their thickness are left to flat triangles: the least size for the sake of a
-# coating over the usual one.
-_LEAST_ROW = 0.25
-# Growth of triangles below an evenly divided surface, and beyond the contact, a unit of the stretched plane.
-_BELOW, _BEYOND = 0.2, 0.5
-# The size at an edge on such a surface, and its growth with the distance, times the size elsewhere.
-_LEAST, _RATE, _BURIED = 1 / 24, 11.0, 7.5  # the last on interfaces, where 11 errs by 8e-4 p_h
-# The largest sizes at the edge, far away and in coatings. A film of one row of triangles as high as the last
-# makes the contact too stiff by up to 1e-5.
-_LARGEST_AT_EDGE, _LARGEST_FAR, _LARGEST_IN_FILM = 0.6, 0.7, 0.47
 
 
 @dataclass(frozen=True)
@@ -45,20 +28,20 @@ class Grading:
 
     size      : size of a triangle over its distance from the edge, in the contact and the coatings
     edge_rate : the same ratio in the fan of triangles around the contact edge, at the distance of one unit
-        of the stretched plane; it grows towards the edge, see ``_FAN``
+        of the stretched plane; it grows towards the edge, see ``FAN_POWER``
     edge_size : smallest triangle, at the edge, over the contact radius
     axis_size : size at the point of first contact, in units of the stretched plane
     far_size  : largest size towards the outer boundary, where one unit is a factor e of distance
     film_size : the same in the coatings
     rows      : triangles across each coating at least, near the contact; fewer where they would be smaller
-        than ``_LEAST_ROW`` times size
+        than ``LEAST_ROW`` times size
     surface   : size on the surface of the contact over its radius, growing below it; 0 for none of its own
     edges     : radii over the contact's at which the pressure has a root, smaller triangles around each
     """
 
     size: float = 0.4
     edge_rate: float = 0.5
-    edge_size: float = EDGE_SIZE
+    edge_size: float = 1e-7
     axis_size: float = 0.2
     far_size: float = 0.8
     film_size: float = 0.8
@@ -67,24 +50,39 @@ class Grading:
     edges: tuple[float, ...] = ()
 
     @classmethod
-    def of(cls, size: float, edge_size: float = EDGE_SIZE, rows: float = 2.6) -> "Grading":
+    def of(cls, size: float) -> "Grading":
         """All sizes from one; the fan at the edge and the far field need less fine triangles."""
-        edge_rate, far = min(1.4 * size, _LARGEST_AT_EDGE), min(2.7 * size, _LARGEST_FAR)
-        return cls(size, edge_rate, edge_size, 0.65 * size, far_size=far, film_size=far, rows=rows)
+        fan = min(chosen.FAN_SIZE * size, chosen.LARGEST_IN_FAN)
+        far = min(chosen.FAR_SIZE * size, chosen.LARGEST_FAR)
+        return cls(size, fan, chosen.EDGE_SIZE, chosen.AXIS_SIZE * size, far, far, chosen.ROWS)
+
+    def coarser(self) -> "Grading":
+        """With all sizes larger by the factor of a family of meshes."""
+        r = chosen.COARSER
+        return replace(
+            self,
+            size=r * self.size,
+            edge_rate=r * self.edge_rate,
+            edge_size=chosen.EDGE_COARSER * self.edge_size,
+            axis_size=r * self.axis_size,
+            far_size=r * self.far_size,
+            film_size=r * self.film_size,
+            rows=self.rows / r,
+        )
 
     def limited(self, share: float) -> "Grading":
         """With sizes at the edge, far away and in the coatings within this ``share`` of the largest ones."""
         return replace(
             self,
-            edge_rate=min(self.edge_rate, _LARGEST_AT_EDGE * share),
-            far_size=min(self.far_size, _LARGEST_FAR * share),
-            film_size=min(self.film_size, _LARGEST_IN_FILM * share),
+            edge_rate=min(self.edge_rate, chosen.LARGEST_IN_FAN * share),
+            far_size=min(self.far_size, chosen.LARGEST_FAR * share),
+            film_size=min(self.film_size, chosen.LARGEST_IN_FILM * share),
         )
 
 
 def surface_size(size: float, distance: np.ndarray | float) -> np.ndarray:
     """Of triangles of a surface of that ``size`` at a ``distance`` from one of its edges."""
-    return np.clip(_RATE * size * np.asarray(distance), _LEAST * size, size)
+    return np.clip(chosen.SURFACE_RATE * size * np.asarray(distance), chosen.SURFACE_LEAST * size, size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,36 +195,39 @@ def _triangulate(
         geo.synchronize()
 
         rho = "Sqrt(x*x+y*y)"
-        bare = np.arcsinh(_NEAR * scale)
+        bare = np.arcsinh(chosen.UNIFORM_DEPTH * scale)
         near = max([bare, *(lower for _, lower in films)])
-        growth = f"(1+{_literal(_GROWTH * bare / near)}*Max(0,{rho}-{_literal(near)}))"
-        fan = f"{_literal(grading.edge_rate)}*{rho}^{_literal(_FAN)}"
+        growth = f"(1+{_literal(chosen.GROWTH * bare / near)}*Max(0,{rho}-{_literal(near)}))"
+        fan = f"{_literal(grading.edge_rate)}*{rho}^{_literal(chosen.FAN_POWER)}"
         origin = f"Sqrt((x-({_literal(xi[0])}))^2+y*y)"
-        distant = _literal(grading.far_size)
+        distant, film_growth = _literal(grading.far_size), _literal(chosen.FILM_GROWTH)
         if grading.surface:
             # fine below the pressure alone; all along the axis, where r dr holds fields least
             origin = f"(x-({_literal(xi[0])}))"
-            distant = f"{distant}*(1+0.2*Max(0,{rho}-{_literal(bare)}))"
+            distant = f"{distant}*(1+{_literal(chosen.SURFACE_BELOW)}*Max(0,{rho}-{_literal(bare)}))"
         sizes = [
             f"{fan}+{_literal(grading.edge_size * scale)}",
             f"Min({distant},{_literal(grading.size)}*{growth})",
             # p(0) has no neighbours on its other side: finer triangles at the point of first contact
-            f"{_literal(grading.axis_size)}*{growth}+0.3*{origin}",
+            f"{_literal(grading.axis_size)}*{growth}+{_literal(chosen.AXIS_GROWTH)}*{origin}",
         ]
         if grading.surface:  # dr = l cosh(xi) dxi
-            even = f"({_literal(grading.surface * scale)}+{_literal(_BELOW)}*y)/Cosh(Min(x,0))"
-            sizes.append(f"{even}+{_literal(_BEYOND)}*Max(0,x)")
-            least, rate = _literal(_LEAST * grading.surface * scale), _literal(_RATE * grading.surface)
+            even = f"({_literal(grading.surface * scale)}+{_literal(chosen.SURFACE_BELOW)}*y)/Cosh(Min(x,0))"
+            sizes.append(f"{even}+{_literal(chosen.SURFACE_BEYOND)}*Max(0,x)")
+            least = _literal(chosen.SURFACE_LEAST * grading.surface * scale)
+            rate, buried = (
+                _literal(one * grading.surface) for one in (chosen.SURFACE_RATE, chosen.BURIED_RATE)
+            )
             for r in grading.edges:
                 along = f"(Sinh(x)+{_literal((1 - r) * scale)})^2"
                 sizes.append(f"Max({least},{rate}*Sqrt({along}+Sinh(y)^2))/Cosh(Min(x,0))")
                 for _, lower in films:
-                    buried = f"{_literal(_BURIED * grading.surface)}*Sqrt({along}+Sinh({_literal(lower)})^2)"
-                    sizes.append(f"{buried}/Cosh(Min(x,0))+0.4*Abs(y-({_literal(lower)}))")
+                    deep = f"{buried}*Sqrt({along}+Sinh({_literal(lower)})^2)/Cosh(Min(x,0))"
+                    sizes.append(f"{deep}+{film_growth}*Abs(y-({_literal(lower)}))")
         for upper, lower in films:
             away = f"Max(0,Max(y-({_literal(lower)}),{_literal(upper)}-y))"
-            row = max((lower - upper) / grading.rows, _LEAST_ROW * grading.size)
-            sizes.append(f"Min({_literal(grading.film_size)},{_literal(row)}*{growth})+0.4*{away}")
+            row = max((lower - upper) / grading.rows, chosen.LEAST_ROW * grading.size)
+            sizes.append(f"Min({_literal(grading.film_size)},{_literal(row)}*{growth})+{film_growth}*{away}")
         field = gmsh.model.mesh.field
         for number, size in enumerate(sizes, start=1):
             field.add("MathEval", number)

@@ -13,8 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from fem_reference.contact.levels import NotConverged
-from fem_reference.element_answer import ElementAnswer, ElementPoints
-from fem_reference.estimate import Uncertainty
+from fem_reference.element_answer import ElementAnswer, ElementPoints, Uncertainty
 from fem_reference.meshing.mesh import surface_size
 from fem_reference.not_round.harmonic_compliance import DENSITY, harmonic_compliance
 from fem_reference.not_round.indenter_height import Height, Indenter, indenter_height

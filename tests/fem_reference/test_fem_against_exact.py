@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from fem_reference import solve
-from fem_reference.contact_solver import QUALITY
+from fem_reference.element_numbers import QUALITY
 from verification.problem.point_answers import Points
 from verification.sources.references import integral_equation
 

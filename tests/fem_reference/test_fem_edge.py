@@ -5,8 +5,9 @@ import pytest
 
 from fem_reference import solve
 from fem_reference.elasticity.axisymmetric import Discretisation
-from fem_reference.elasticity.recovery import EDGE_SERIES, HarmonicField
-from fem_reference.meshing.mesh import EDGE_SIZE, Grading, meridian_mesh
+from fem_reference.elasticity.recovery import HarmonicField
+from fem_reference.element_numbers import EDGE_SERIES, EDGE_SIZE
+from fem_reference.meshing.mesh import Grading, meridian_mesh
 from verification.problem.point_answers import Points
 from verification.sources.references import hertz, integral_equation
 

@@ -3,16 +3,18 @@
 import pickle
 from dataclasses import asdict, replace
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from fem_reference import solve, solve_prescribed
-from fem_reference.companion_points import samples
+from fem_reference.comparison_points import samples
 from fem_reference.contact.fixed_radius import solve_at_radius
-from fem_reference.contact.levels import COMPANION, companion_grading, final_grading
+from fem_reference.contact.levels import family
 from fem_reference.elasticity.state import ElasticState
-from fem_reference.estimate import SAFETY, contact_estimates, estimates
+from fem_reference.element_numbers import COARSER, EDGE_COARSER, SAFETY
+from fem_reference.estimate import contact_estimates, estimates, from_changes
 from verification.problem.point_answers import Points
 
 R, W, E, NU = 10e-3, 20.0, 210e9, 0.3
@@ -116,51 +118,61 @@ def budget(found):
     return {(quantity, origin): value for quantity, origin, value in found.scalars.budget}
 
 
-def estimated(companion, residual=0.0):
-    """Budget and uncertainty of the stiffness if ``companion`` were the contact on the coarser mesh."""
+def estimated(*coarser, residual=0.0):
+    """Budget and uncertainty of the stiffness if ``coarser`` were the contacts on the coarser meshes."""
     one, s = replace(contact(), residual=residual), solved("sphere")
     states = (ElasticState.of_contact(s.state.solid, one),)
-    (found,), stiffness = contact_estimates(one, companion, states, s.units, 0.5)
+    (found,), stiffness = contact_estimates((one, *coarser), states, s.units)
     return budget(found), stiffness
 
 
-def test_a_companion_that_agrees_leaves_no_error_of_element_size():
+def test_meshes_that_agree_leave_no_error_of_element_size():
     one = contact()
-    # what a companion misses of the load is no error of its mesh
+    # what a coarser one misses of the load is no error of its mesh
     missing = replace(one, load=1.001 * one.load, approach=one.approach + 1e-3 * one.load / one.stiffness)
-    (same, least), (other, _) = estimated(one), estimated(missing)
+    same, _ = estimated(one, one)
     assert same["contact_radius", "element size"] < 1e-9 * same["contact_radius", "edge size"]
-    assert same["approach", "element size"] < 1e-12 * solved("sphere").approach
-    assert other["approach", "element size"] < 1e-12 * solved("sphere").approach
-    # larger or smaller alike
-    for name in ("approach", "stiffness"):
-        up, down = (estimated(replace(one, **{name: getattr(one, name) * f})) for f in (1.001, 0.999))
-        larger, smaller = (row["approach", "element size"] for row, _ in (up, down))
-        assert larger == pytest.approx(smaller, rel=1e-6, abs=1e-12 * solved("sphere").approach)
-        assert up[1] == pytest.approx(down[1])
-        assert max(larger, up[1] - least) > 0
+    for row, _ in (estimated(one, one), estimated(missing, one), estimated(one, missing)):
+        assert row["approach", "element size"] < 1e-12 * solved("sphere").approach
 
 
-def test_a_change_from_the_companion_counts_by_roaches_factor_more_on_coarse_triangles():
-    one, s = contact(), solved("sphere")
-    _, least = estimated(one)
-    # Roache (1994) eq. 9 for two meshes of ratio 1.4 and order 2, times 0.5 / 0.18 at size 0.5
-    factor, change = 3 / (1.4**2 - 1) * 0.5 / 0.18, 1e-3
-    softer, _ = estimated(replace(one, approach=one.approach * (1 + change)))
-    # 1.7: what random films needed
-    expected = 1.7 * factor * change * s.approach
-    assert softer["approach", "element size"] == pytest.approx(expected, rel=1e-6, abs=0)
-    # with the load the radius at one load: W ~ a^growth
-    larger, _ = estimated(replace(one, load=one.load * (1 + change) ** one.growth))
-    radius = factor * change / (1 + change) * s.contact_radius
-    assert larger["contact_radius", "element size"] == pytest.approx(radius, rel=1e-6, abs=0)
-    _, stiffer = estimated(replace(one, stiffness=one.stiffness * (1 + change)))
-    assert stiffer - least == pytest.approx(factor * change * s.stiffness, rel=1e-6, abs=0)
+@pytest.mark.parametrize("sign", [1, -1])
+def test_changes_between_meshes_count_by_roaches_factor(sign):
+    one, s, change = contact(), solved("sphere"), sign * 1e-3
+    _, least = estimated(one, one)
+    other = replace(
+        one,
+        approach=one.approach * (1 + change),
+        stiffness=one.stiffness * (1 + change),
+        # with the load the radius at one load: W ~ a^growth
+        load=one.load * (1 + change) ** one.growth,
+    )
+    # Roache (1994) eq. 9, ratio 1.4: order 2 + 1 of displacements; of the coarser meshes' change the share
+    last = 3 / (1.4**3 - 1) * abs(change)
+    for coarser, factor in (((other, other), last), ((one, other), last / 1.4**3)):
+        row, stiffness = estimated(*coarser)
+        missing = one.approach * (1 + change) + (one.load - other.load) / other.stiffness - one.approach
+        approach = factor * abs(missing / change) * s.units.displacement
+        assert row["approach", "element size"] == pytest.approx(approach, rel=1e-9, abs=0)
+        radius = factor / (1 + change) * s.contact_radius
+        assert row["contact_radius", "element size"] == pytest.approx(radius, rel=1e-5, abs=0)
+        assert stiffness - least == pytest.approx(factor * s.stiffness, rel=1e-9, abs=0)
+
+
+@pytest.mark.parametrize("order", [1, 3, 5])
+def test_an_error_of_the_order_is_stated_thrice(order):
+    # f = c h^p: the last change over r^p - 1 is the error of the finest mesh
+    error = 1e-6
+    fine, coarse = (error * (COARSER ** ((k + 1) * order) - COARSER ** (k * order)) for k in (0, 1))
+    assert from_changes(np.array([fine, coarse]), order) == pytest.approx(SAFETY * error)
+    # a last change that is small by chance does not count
+    assert from_changes(np.array([0.0, coarse]), order) == pytest.approx(SAFETY * error)
+    assert from_changes(np.array([coarse, coarse]), order) > SAFETY * error
 
 
 def test_forces_out_of_balance_count_as_load():
     one, s = contact(), solved("sphere")
-    (none, least), (some, stiffness) = estimated(one), estimated(one, residual=1e-3)
+    (none, least), (some, stiffness) = (estimated(one, one, residual=load) for load in (0.0, 1e-3))
     # W ~ a^2 at least; p ~ W^(1/3)
     shares = {"contact_radius": 1 / 2, "approach": 1, "peak_pressure": 1 / 3}
     for name, share in shares.items():
@@ -174,10 +186,10 @@ def test_each_cause_adds_to_the_uncertainty():
     s = solved("sphere")
     found, unit, state = s.estimates[0], s.units, s.state
 
-    def of(load_residual=0.0, edge=0.0, changes=(0.0, 0.0)):
-        return estimates((state,), (found.companion,), unit, changes, load_residual, edge, 0.5)[0]
+    def of(approach=0.0, **causes):
+        return estimates((state,), (found.coarser,), unit, approach, **causes)[0]
 
-    none, load, edge, size = of(), of(load_residual=1e-3), of(edge=1e-3), of(changes=(1e-3, 1e-3))
+    none, load, edge, size = of(), of(load=1e-3), of(edge=1e-3), of(1e-3, radius=1e-3)
     for one in (none, load, edge, size):
         rows, scalars = budget(one), one.scalars
         for name in ("contact_radius", "approach", "peak_pressure"):
@@ -189,10 +201,10 @@ def test_each_cause_adds_to_the_uncertainty():
         far_and_load = rows["peak_pressure", "outer boundary"] + rows["peak_pressure", "load balance"]
         assert one.pressure.everywhere * unit.pressure == pytest.approx(far_and_load)
     assert load.normal.relative - none.normal.relative == pytest.approx(1.5e-3)
-    assert edge.normal.radius_error - none.normal.radius_error == pytest.approx(SAFETY * 1e-3)
-    assert size.normal.radius_error > none.normal.radius_error
-    assert size.pollution > none.pollution == 0
-    assert size.normal.everywhere - none.normal.everywhere == pytest.approx(size.pollution)
+    for one in (edge, size):
+        assert one.normal.radius_error - none.normal.radius_error == pytest.approx(1e-3)
+    share = 1e-3 / (s.approach / unit.displacement) + 1e-3 / state.mesh.contact_radius
+    assert size.normal.relative - none.normal.relative == pytest.approx(share)
 
 
 def test_each_part_of_the_estimate_adds_to_that_of_stress_and_displacement():
@@ -200,7 +212,7 @@ def test_each_part_of_the_estimate_adds_to_that_of_stress_and_displacement():
     found, a = s.estimates[0].normal, s.state.mesh.contact_radius
     r, z = a * np.array([0.0, 0.5, 1.0, 1.02, 0.3, 2.0]), a * np.array([0.0, 0.2, 0.0, 0.01, 0.9, 1.5])
     at = s.state.discretisation.locator.points(r, z, np.searchsorted(s.state.mesh.depths, z))
-    u, stress = found.field(at)
+    u, stress = found.fields[0](at)
     before, moved = found(at), found.displacement(at)
     more = replace(found, far=found.far + 1, everywhere=found.everywhere + 2)
     np.testing.assert_allclose(more.displacement(at), moved + 1)
@@ -209,30 +221,36 @@ def test_each_part_of_the_estimate_adds_to_that_of_stress_and_displacement():
     np.testing.assert_allclose(more.displacement(at), moved + np.abs(u))
     assert np.all((more(at) > before)[stress != 0])
     # a displaced edge counts beside the edge alone
-    displaced, near = replace(found, radius_error=1e-2 * a)._displaced(at), np.hypot(r - a, z) < 0.3 * a
+    displaced, near = (
+        replace(found, radius_error=1e-2 * a)._displaced(at, stress),
+        np.hypot(r - a, z) < 0.3 * a,
+    )
     assert np.all(displaced[:, ~near] == 0)
     assert np.all(displaced[0, near] > 0)
 
 
 @pytest.mark.parametrize("size", [0.08, 0.12, 0.18, 0.27, 0.5])
-def test_the_companion_is_coarser_everywhere_by_one_factor(size):
-    final, companion = asdict(final_grading(size)), asdict(companion_grading(size))
-    assert final.pop("rows") / companion.pop("rows") == pytest.approx(COMPANION)
-    assert companion.pop("edge_size") > final.pop("edge_size")
-    assert companion.pop("surface") == final.pop("surface") == 0.0  # for contacts that are no discs, as are
-    assert companion.pop("edges") == final.pop("edges") == ()
-    for name in final:
-        assert companion[name] / final[name] == pytest.approx(COMPANION), name
+def test_three_meshes_are_of_one_family(size):
+    meshes = [asdict(grading) for grading in family(size)]
+    for fine, coarse in pairwise(meshes):
+        for name in ("surface", "edges"):  # for contacts that are no discs
+            assert not coarse[name]
+            assert not fine[name]
+        factors = {"rows": 1 / COARSER, "edge_size": EDGE_COARSER}
+        for name in fine.keys() - {"surface", "edges"}:
+            assert coarse[name] / fine[name] == pytest.approx(factors.get(name, COARSER)), name
 
 
-def test_estimate_is_at_least_the_change_from_the_companion():
+def test_the_uncertainty_is_above_the_last_change():
     # at some places the final mesh is the worse one, and all the change is its error
     found = solved("sphere").estimates[0].normal
-    final, companion = found.points.triangles
-    change = np.abs(found.field(final)[1] - found.companion(companion)[1])
-    assert np.all(found._error((final, companion))[:6] >= change)
+    final, companion, _ = found.points.triangles
+    change = np.abs(found.fields[0](final)[1] - found.fields[1](companion)[1])
+    assert np.all(found._changes(found.points.triangles)[0, :6] == change)
+    worst = change.reshape(6, 7, -1).max(axis=1)
+    assert np.all(found._corners[:6] >= worst[:, None])
     # a vertex of a plane has the stresses of two cells, of which samples next to it see either
-    vertices = found.points.final.contact_vertices
+    vertices = found.points.meshes[0].contact_vertices
     cells = samples(vertices).reshape(vertices.size - 1, -1)
     assert np.all((vertices[:-1, None] < cells) & (cells < vertices[1:, None]))
     np.testing.assert_allclose(cells[:, [0, -1]].T, [vertices[:-1], vertices[1:]], rtol=0, atol=1e-6)
@@ -240,12 +258,13 @@ def test_estimate_is_at_least_the_change_from_the_companion():
 
 def test_solutions_are_compared_inside_the_triangles():
     points, mesh = solved("sphere").estimates[0].normal.points, solved("sphere").state.mesh
-    final, companion = points.triangles
+    final, *coarser = points.triangles
     assert final.z.size == 7 * mesh.layer.size
     assert final.z.min() > 0
     assert not np.isin(final.z, mesh.depths).any()
     assert np.min([*final.X, 1 - final.X.sum(axis=0)]) > -1e-9
-    np.testing.assert_array_equal(final.z, companion.z)
-    vertices = points.final.contact_vertices
+    for one in coarser:
+        np.testing.assert_array_equal(final.z, one.z)
+    vertices = points.meshes[0].contact_vertices
     assert (vertices[0], vertices[-1]) == (0, mesh.contact_radius)
     assert np.all(np.diff(vertices) > 0)

@@ -141,7 +141,7 @@ def refined_mesh(
     problem: CoatedContact, order: int, *, solid: str, solve: Callable[..., Solution]
 ) -> Refinement:
     """``problem`` by elements of ``order`` on the fast and the default mesh; else as ``refined_grid``."""
-    from fem_reference.contact_solver import QUALITY
+    from fem_reference.element_numbers import QUALITY
 
     steps = {name: {"order": order, "size": QUALITY[name]} for name in ("fast", "default")}
     return _refined(Refinement("fem_reference", solid, f"order {order}"), problem, solve, steps)

@@ -107,7 +107,7 @@ JUDGE = "verification.judging:judge"
         (Change("verification.judging:no_such_function", "a", "b"), "in no module"),
         (Change("verification.study:judge", "a", "b"), r"in verification\.judging\.verdict"),
         (Change("verification.sampling:positions", "a", "b"), "2 definitions.*oblique"),
-        (Change("fem_reference.estimate:SAFETY", by="6 / 2"), "nothing would be planted"),
+        (Change("fem_reference.element_numbers:SAFETY", by="6 / 2"), "nothing would be planted"),
     ],
 )
 def test_a_fault_that_no_longer_fits_the_source_is_refused(change, said):
