@@ -154,16 +154,16 @@ ROUNDING = 1e-9
 # ----------------------------------------------------------------------------------------- uncertainty
 # Roache's factor with an order observed on three grids. [J. Fluids Eng. 116 (1994) 405-413]
 SAFETY = 1.25
-# Order of patches under a smooth edge, and alone, with a staircase for an edge. [problems]
-ORDER, ORDER_ALONE = 2.0, 1.5
+# Orders: of patches under a smooth edge; of patches alone, with a staircase for an edge, and of a shape that is
+# fitted near the edge alone. [problems]
+ORDERS = (2.0, 1.0)
 # Share of the distance to the edge within which the largest change of a field counts; patches of it at
 # least. [problems]
 NEIGHBOURHOOD, LEAST_NEIGHBOURHOOD = 0.5, 2.0
-# Of a patch, by which a smooth edge between the centres of patches is uncertain. [problems]
-WITHIN = 2e-4
-# Patches between centre and edge, below which an edge on a film within ``NARROW_EDGE`` patches is no better
-# known than a staircase: on 15 patches it was off by 0.2 of one. [test_semianalytic_solver]
-FEW_FOR_EDGE = 24
+# Of approach and peak pressure under a smooth edge, times (d/a)^2: what the patches along it leave. [problems]
+SECOND = 1e-3
+# Patches from a smooth edge, nearer than which patches are cut by it and say nothing of its place. [problems]
+CUT = 1.5
 # Distances from the edge at which changes of a field are sampled, and depth in contact radii. [problems]
 TABLE, DEEPEST = 16, 8.0
 # Error of a field over the peak pressure: on rings; by patches, above 4 of them and below.

@@ -20,7 +20,7 @@ from semianalytic.patch_answer import PatchAnswer, PatchPoints
 from semianalytic.patches.level import Level, interpolated
 from semianalytic.patches.neighbours import Neighbours
 from semianalytic.stresses import fields
-from semianalytic.uncertainty import ChangeTable, Uncertainty, of_levels
+from semianalytic.uncertainty import ChangeTable, Uncertainty, of_levels, order_of, refined
 
 Array = NDArray[np.floating]
 BoolArray = NDArray[np.bool_]
@@ -209,8 +209,9 @@ class Solution:
         other = self._other("peak_pressure")
         shape = self._level.shape
         if shape is not None:
-            a = self._stated.contact_radius
-            moved = np.max([np.abs(shape.widened(s).pressure(x, y) - p) for s in (-a, a)], axis=0)
+            shift = self._uncertain_reach
+            widened = (shape.widened(s).pressure(x, y) for s in (-shift, shift))
+            moved = np.max([np.abs(q - p) for q in widened], axis=0)
             U = self._of_patch_size(points, "pressure") + other
             return PatchAnswer(p, U + np.where(at_edge(points), 0.0, moved))
         changed = interpolated(self.nodes, self._refinement, x, y, order=1)
@@ -281,7 +282,7 @@ class Solution:
             here = layer.ravel() == number
             table = self._table(quantity, points.body, int(number))
             U[:, here] = table(share[here], z.ravel()[here], len(U))
-        return U.reshape(*axes, *x.shape) + (0.0 if quantity == "displacement" else self._of_shape(x, y, z))
+        return U.reshape((*axes, *x.shape)) + (0.0 if quantity == "displacement" else self._of_shape(x, y, z))
 
     def _of_shape(self, x: Array, y: Array, z: Array) -> Array:
         """Error [Pa] of the shape of a smooth pressure on every grid: by its polynomials and at the edge.
@@ -329,7 +330,7 @@ class Solution:
     ) -> Array:
         """Change of the stress [Pa] by the uncertain radius, within ``NEAR_EDGE`` patches of the edge; (3, 3)
         + points."""
-        shift = self._stated.contact_radius
+        shift = self._uncertain_reach
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         distance = np.hypot(self._to_edge(x, y), z)
         near = distance < numbers.NEAR_EDGE * self.diagnostics.patch_size + shift
@@ -339,6 +340,21 @@ class Solution:
                 self._level, solid, shift, x[near], y[near], z[near], layer
             )
         return change
+
+    @cached_property
+    def _uncertain_reach(self) -> float:
+        """Uncertainty of the distance from centre to edge [m], the largest of all directions."""
+        stated, shapes = self._stated.contact_radius, [level.shape for level in self._levels]
+        if any(shape is None or shape.round for shape in shapes):
+            return stated
+        angle = 2 * np.pi * np.arange(64) / 64
+        fine, second, third = (np.array(shape.on_ray(np.ones(64), angle)) for shape in shapes if shape)
+        moved = [float(np.hypot(*change).max()) for change in (fine - second, second - third)]
+        return max(
+            stated,
+            float(refined(*moved, self._levels[0].grid.n / self._levels[1].grid.n, order_of(self._level)))
+            + self._level.edge_error,
+        )
 
     def _to_edge(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Distance of points from a smooth edge [m], about."""

@@ -46,9 +46,13 @@ def refined(last: ArrayLike, before: ArrayLike, ratio: float, order: float) -> A
 def of_levels(levels: Sequence[Level], values: ArrayLike) -> Array:
     """``refined`` of values on three levels, the finest first, along the first axis."""
     fine, middle, coarse = np.asarray(values)
-    ratio = levels[0].grid.n / levels[1].grid.n
-    order = numbers.ORDER_ALONE if levels[0].smooth() is None else numbers.ORDER
-    return refined(fine - middle, middle - coarse, ratio, order)
+    return refined(fine - middle, middle - coarse, levels[0].grid.n / levels[1].grid.n, order_of(levels[0]))
+
+
+def order_of(level: Level) -> float:
+    """Order of the method: the first of patches alone and of a shape that is fitted near the edge alone."""
+    outside = level.shape is not None and level.shape.outside
+    return numbers.ORDERS[1 if outside or level.smooth() is None else 0]
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +99,7 @@ class ChangeTable:
         near = np.hypot(S[:, None] - S, Z[:, None] - Z) <= reach[:, None]
         changes = changes.reshape(*changes.shape[:2], -1)
         largest = np.stack([np.where(near, one[..., None, :], 0.0).max(axis=-1) for one in changes])
-        U = refined(largest[:, 0], largest[:, 1], levels[0].grid.n / levels[1].grid.n, numbers.ORDER)
+        U = refined(largest[:, 0], largest[:, 1], levels[0].grid.n / levels[1].grid.n, order_of(levels[0]))
         return cls(shares, depths, U.reshape(-1, shares.size, depths.size))
 
     def __call__(self, share: Array, z: Array, components: int) -> Array:
@@ -151,18 +155,19 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
 def _of_edge(level: Level) -> dict[str, float]:
     """Effect of an edge that its own grid leaves uncertain: between the centres of patches, or a staircase.
 
-    A smooth edge is known to ``WITHIN`` of a patch, and to what its rounds leave: its pressure falls as the
-    square of the radius then. The approach is stationary in the contact's area and changes by the second
-    order, as the patches along the edge are integrated; at the edge of a punch in proportion to the square
-    of the pressure there.
+    The approach is stationary in the contact's area: it changes as the square of the pressure where the edge
+    may be, which is of the second order at a smooth edge and of the first at that of a punch. Patches that a
+    smooth edge cuts leave ``SECOND`` times the square of their share of the radius.
     """
-    smooth = level.shape is not None
-    moved, patch = level.edge_error / level.radius, level.grid.d / level.radius
-    inside = numbers.WITHIN * patch**2 if smooth else level.load_at_edge * moved
-    of_peak = inside + moved**2 + 2 * level.unsettled / level.radius if smooth else 0.0
+    moved, shape, left, at_edge = level.edge_error / level.radius, level.shape, 0.0, level.load_at_edge
+    if shape is not None:
+        left = numbers.SECOND * (level.grid.d / min(shape.axes)) ** 2
+        p = shape.pressure(*shape.on_ray(max(1 - moved, 0.0), np.pi / 4 * np.arange(8)))
+        at_edge = float(np.mean(p**2)) / level.scalars["peak_pressure"] ** 2
+    of_peak = left + moved**2 + 2 * level.unsettled / level.radius if shape is not None else 0.0
     return {
         "contact_radius": level.edge_error,
-        "approach": level.found.approach * (inside + moved**2),
+        "approach": level.found.approach * (left + at_edge * moved + moved**2),
         "peak_pressure": level.scalars["peak_pressure"] * of_peak,
     }
 

@@ -71,21 +71,33 @@ class Level:
 
     @property
     def edge_error(self) -> float:
-        """Error of the radius [m] on this grid: of a smooth edge ``WITHIN`` of a patch, and what its
-        rounds leave; of few patches, on a film of few, no less than a staircase.
+        """Error of the radius [m] on this grid: of a smooth edge, what its shape misses and its rounds leave.
 
         Of patches alone a quarter of a patch all along the edge, whose length is that of the staircase times
         pi/4, its mean over all directions (Cauchy-Crofton).
         """
         if self.shape is not None:
-            patch = self.grid.d / min(self.shape.axes)
-            thin = self.shape.layer < numbers.LAYER * numbers.NARROW_EDGE * patch
-            few = thin and patch * numbers.FEW_FOR_EDGE > 1
-            return self.unsettled + (0.25 if few else numbers.WITHIN) * self.grid.d
+            return self.unsettled + self.radius * self.edge_misfit
         d, loaded = self.grid.d, self.grid.whole(self.found.pressure) > 0
         touching = replace(self.grid, quarter=False).ringed(loaded)
         edges = sum(int(np.count_nonzero(np.diff(touching, axis=axis))) for axis in (0, 1))
         return float(np.pi / 4 * edges * d * 0.25 * d / (2 * np.pi * self.radius))
+
+    @cached_property
+    def edge_misfit(self) -> float:
+        """Share of the way to a smooth edge by which the pressures of the patches beside it deny its shape.
+
+        There p is as the square root of the distance x: one that is off by dp at x belongs to an edge that is
+        off by 2 x dp/p. The largest of all patches over which the shape was fitted to the edge.
+        """
+        assert self.shape is not None
+        p, f = self.found.pressure, replace(self.shape, outside=False)
+        centres = self.grid.x[:, None], self.grid.x[None, :]
+        patch, away = self.grid.d / min(self.shape.axes), 1 - self.shape.share(*centres)
+        farthest = max(numbers.NARROW_EDGE * patch, numbers.FADED_INSIDE[0] / 2)
+        near = (p > 0) & (away > numbers.CUT * patch) & (away < farthest)
+        off = np.abs(p - f.pressure(*centres))[near] / p[near]
+        return float(np.max(2 * off * away[near], initial=0.0))
 
     @property
     def load_at_edge(self) -> float:
