@@ -154,15 +154,15 @@ ROUNDING = 1e-9
 # ----------------------------------------------------------------------------------------- uncertainty
 # Roache's factor with an order observed on three grids. [J. Fluids Eng. 116 (1994) 405-413]
 SAFETY = 1.25
-# Orders: of patches under a smooth edge; of patches alone, with a staircase for an edge, and of a shape that is
+# Orders: of patches under a smooth edge; of patches alone, and of a shape that is
 # fitted near the edge alone. [problems]
 ORDERS = (2.0, 1.0)
 # Share of the distance to the edge within which the largest change of a field counts; patches of it at
 # least. [problems]
 NEIGHBOURHOOD, LEAST_NEIGHBOURHOOD = 0.5, 2.0
-# Of approach and peak pressure under a smooth edge, times (d/a)^2: what the patches along it leave. [problems]
+# Of approach and peak pressure under a smooth edge, times (d/a)^2: what patches leave. [problems]
 SECOND = 1e-3
-# Patches from a smooth edge, nearer than which patches are cut by it and say nothing of its place. [problems]
+# Patches from a smooth edge, nearer than which they are cut by it. [problems]
 CUT = 1.5
 # Distances from the edge at which changes of a field are sampled, and depth in contact radii. [problems]
 TABLE, DEEPEST = 16, 8.0

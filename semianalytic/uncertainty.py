@@ -1,15 +1,15 @@
 """Numerical uncertainty: Roache's refinement study on three grids, and a term for each other cause.
 
-    U = SAFETY max(e1, e2/r^P) / (r^p - 1) + others,    p = ln(e2/e1) / ln r,    P/2 <= p <= P
+    U = SAFETY max(e1, e2/r^(3P/2)) / (r^p - 1) + others,    p = ln(e2/e1) / ln r,    P/2 <= p <= P
 
 with e1 and e2 the changes on refining the patches the last time and the time before, r the last refinement,
-P the order of the method and p the one observed. The second term stands for e1 where that is small by chance.
+P the order of the method and p the one observed. The second term stands for e1 where that is small by chance:
+an observed order above 3P/2 is none.
 Changes of a field cross zero where its error does not: e1 and e2 of a field are the largest ones within
 ``NEIGHBOURHOOD`` times the distance to the contact edge, at the same share of the way to it.
 
-P. J. Roache, J. Fluids Eng. 116 (1994) 405-413; limits of p: W. L. Oberkampf and C. J. Roy, Verification
-and Validation in Scientific Computing, Cambridge University Press, 2010, section 8.6; ASME V&V 20-2009,
-section 2.
+P. J. Roache, J. Fluids Eng. 116 (1994) 405-413; ASME V&V 20-2009, section 2; limits of p: L. Eca, M. Hoekstra,
+J. Comput. Phys. 262 (2014) 104-130.
 """
 
 from collections.abc import Callable, Sequence
@@ -40,7 +40,7 @@ def refined(last: ArrayLike, before: ArrayLike, ratio: float, order: float) -> A
     with np.errstate(divide="ignore", invalid="ignore"):
         observed = np.log(e2 / e1) / np.log(ratio)
     p = np.clip(np.where(np.isnan(observed), order, observed), order / 2, order)
-    return np.asarray(numbers.SAFETY * np.maximum(e1, e2 / ratio**order) / (ratio**p - 1))
+    return np.asarray(numbers.SAFETY * np.maximum(e1, e2 / ratio ** (1.5 * order)) / (ratio**p - 1))
 
 
 def of_levels(levels: Sequence[Level], values: ArrayLike) -> Array:
@@ -59,7 +59,7 @@ def order_of(level: Level) -> float:
 class ChangeTable:
     """Uncertainty of a field in one layer by the size of the patches, over share of the way and depth.
 
-    values : (kinds, depths, shares), see ``TURNING``.
+    values : (kinds, shares, depths), see ``TURNING``.
     """
 
     shares: Array
