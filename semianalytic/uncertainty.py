@@ -8,8 +8,8 @@ an observed order above 3P/2 is none.
 Changes of a field cross zero where its error does not: e1 and e2 of a field are the largest ones within
 ``NEIGHBOURHOOD`` times the distance to the contact edge, at the same share of the way to it.
 
-P. J. Roache, J. Fluids Eng. 116 (1994) 405-413; ASME V&V 20-2009, section 2; limits of p: L. Eca, M. Hoekstra,
-J. Comput. Phys. 262 (2014) 104-130.
+P. J. Roache, J. Fluids Eng. 116 (1994) 405-413; ASME V&V 20-2009, section 2; limits of p: L. Eca and
+M. Hoekstra, J. Comput. Phys. 262 (2014) 104-130.
 """
 
 from collections.abc import Callable, Sequence

@@ -71,13 +71,17 @@ class Level:
 
     @property
     def edge_error(self) -> float:
-        """Error of the radius [m] on this grid: of a smooth edge, what its shape misses and its rounds leave.
+        """Error of the radius [m] on this grid: of a smooth edge, what its shape misses and rounds leave; of
+        few patches, on a film of few, no less than a quarter of one.
 
-        Of patches alone a quarter of a patch all along the edge, whose length is that of the staircase times
-        pi/4, its mean over all directions (Cauchy-Crofton).
+        Of patches alone that all along the edge, whose length is that of the staircase times pi/4, its mean
+        over all directions (Cauchy-Crofton).
         """
         if self.shape is not None:
-            return self.unsettled + self.radius * self.edge_misfit
+            patch = self.grid.d / min(self.shape.axes)
+            thin = self.shape.layer < numbers.LAYER * numbers.NARROW_EDGE * patch
+            few = thin and patch * numbers.FEW_FOR_EDGE > 1
+            return self.unsettled + self.radius * self.edge_misfit + (0.25 * self.grid.d if few else 0.0)
         d, loaded = self.grid.d, self.grid.whole(self.found.pressure) > 0
         touching = replace(self.grid, quarter=False).ringed(loaded)
         edges = sum(int(np.count_nonzero(np.diff(touching, axis=axis))) for axis in (0, 1))
