@@ -160,7 +160,8 @@ ORDERS = (2.0, 1.0)
 # Share of the distance to the edge within which the largest change of a field counts; patches of it at
 # least. [problems]
 NEIGHBOURHOOD, LEAST_NEIGHBOURHOOD = 0.5, 2.0
-# Of approach and peak pressure under a smooth edge, times (d/a)^2: what patches leave. [problems]
+# Of approach and peak pressure under a smooth edge, times (d/a)^2: what patches leave of the deflection.
+# [test_long_contacts]
 SECOND = 1e-3
 # Patches from a smooth edge, nearer than which they are cut by it. [problems]
 CUT = 1.5

@@ -289,7 +289,7 @@ class Solution:
 
         What its polynomials leave out is measured inside, and fades as the field of a load. An edge that is
         wrong by a share of a patch changes the pressure one patch inside by half that share; at a given
-        load it fades as distance^(-3/2) from there.
+        load it fades as distance^(-3/2) from there. A traction f p adds 2 f times it to the stress along it.
         """
         level, d = self._level, self.diagnostics.patch_size
         shape = level.shape
@@ -297,7 +297,8 @@ class Solution:
         distant = (x * x + y * y + z * z) / self.contact_radius**2
         inside = float(shape.pressure(*shape.on_ray(max(1 - d / min(shape.axes), 0.0), np.zeros(()))))
         away = np.maximum(np.hypot(self._to_edge(x, y), z) / d, 1.0)
-        return np.asarray(level.misfit / (1 + distant) + level.edge_error / (2 * d) * inside / away**1.5)
+        at_edge = (1 + 2 * abs(self._body.friction)) * level.edge_error / (2 * d) * inside
+        return np.asarray(level.misfit / (1 + distant) + at_edge / away**1.5)
 
     def _of_all_levels(
         self, quantity: str, body: str, x: Array, y: Array, z: Array, layer: int | None

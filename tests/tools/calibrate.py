@@ -39,10 +39,9 @@ def calibrate(
     record: Path = RECORD,
     quiet: Quiet = False,
 ) -> int:
-    """Solve clean random problems by patches and the exact reference; derive the factors of the uncertainty.
+    """Solve clean random problems by patches and the exact reference; derive the factor of the uncertainty.
 
-    SECOND is the largest error of an approach or a peak pressure, less what U states from other causes, over
-    what it is a factor of. SAFETY is Roache's, and more in proportion where any error is more of U.
+    SAFETY is Roache's, and more in proportion where the largest error is more than ``MARGIN`` of U.
 
     Args:
         seed: Seed of the problems, none that judges a method.
@@ -58,7 +57,7 @@ def calibrate(
         raise CommandError(f"--count = {count}, --films = {films}; at least one problem is needed")
     results = [solved(problem.text, SOURCE) for problem in drawn]
     found = sorted((row for result in results for row in _ratios(result)), reverse=True)
-    wanted = _factors(results, found[0][0])
+    wanted = _factors(found[0][0])
     if not quiet:
         table = named_table("problem", "quantity", "line", "error over U")
         for ratio, *where in found[:MOST_SHOWN]:
@@ -88,23 +87,10 @@ def _ratios(result: CaseResult) -> list[tuple[float, str, str, str]]:
     ]
 
 
-def _factors(results: list[CaseResult], largest: float) -> dict[str, float]:
-    """SAFETY and SECOND with which the largest error over uncertainty would be ``MARGIN``, rounded up."""
-    table, second = import_module(TABLE), 0.0
-    for result in results:
-        budget = next(one.budget for one in result.sources if one.source == SOURCE)
-        for mine, error, U in compared(result, SOURCE):
-            if mine.quantity in ("approach", "peak_pressure"):
-                of_edge = sum(U for name, origin, U in budget if (name, origin) == (mine.quantity, "edge"))
-                left = float(np.max(error - U)) + of_edge
-                second = max(second, table.SECOND * left / of_edge)
-    wanted = {"SAFETY": max(ROACHE, table.SAFETY * largest / MARGIN), "SECOND": second / MARGIN}
-    return {name: _rounded_up(value) for name, value in wanted.items()}
-
-
-def _rounded_up(value: float) -> float:
-    digit = 10.0 ** (np.floor(np.log10(max(value, 1e-9))) - 1)
-    return float(f"{np.ceil(value / digit - 1e-9) * digit:.2g}")
+def _factors(largest: float) -> dict[str, float]:
+    """SAFETY with which the largest error over uncertainty would be ``MARGIN``, rounded up."""
+    safety = max(ROACHE, import_module(TABLE).SAFETY * largest / MARGIN)
+    return {"SAFETY": float(np.ceil(100 * safety - 1e-9) / 100)}
 
 
 def _commit() -> str:
