@@ -353,7 +353,11 @@ class Solution:
         moved = [float(np.hypot(*change).max()) for change in (fine - second, second - third)]
         return max(
             stated,
-            float(refined(*moved, self._levels[0].grid.n / self._levels[1].grid.n, order_of(self._level)))
+            float(
+                refined(
+                    moved[0], moved[1], self._levels[0].grid.n / self._levels[1].grid.n, order_of(self._level)
+                )
+            )
             + self._level.edge_error,
         )
 
