@@ -3,8 +3,7 @@
     U = SAFETY max(e1, e2/r^(3P/2)) / (r^p - 1) + others,    p = ln(e2/e1) / ln r,    P/2 <= p <= P
 
 with e1 and e2 the changes on refining the patches the last time and the time before, r the last refinement,
-P the order of the method and p the one observed. The second term stands for e1 where that is small by chance:
-an observed order above 3P/2 is none.
+P the order of the method and p the one observed. The second term stands for e1 where that is small by chance.
 Changes of a field cross zero where its error does not: e1 and e2 of a field are the largest ones within
 ``NEIGHBOURHOOD`` times the distance to the contact edge, at the same share of the way to it.
 
@@ -163,7 +162,7 @@ def _of_edge(level: Level) -> dict[str, float]:
     if shape is not None:
         left = numbers.SECOND * (level.grid.d / min(shape.axes)) ** 2
         p = shape.pressure(*shape.on_ray(max(1 - moved, 0.0), np.pi / 4 * np.arange(8)))
-        at_edge = float(np.mean(p**2)) / level.scalars["peak_pressure"] ** 2
+        at_edge = float(np.mean(p**2)) / 2 / level.scalars["peak_pressure"] ** 2
     of_peak = left + moved**2 + 2 * level.unsettled / level.radius if shape is not None else 0.0
     return {
         "contact_radius": level.edge_error,

@@ -71,21 +71,22 @@ class Level:
 
     @property
     def edge_error(self) -> float:
-        """Error of the radius [m] on this grid: of a smooth edge, what its shape misses and rounds leave; of
-        few patches, on a film of few, no less than a quarter of one.
+        """Error of the radius [m] on this grid: of a smooth edge, what its shape misses and rounds leave.
 
-        Of patches alone that all along the edge, whose length is that of the staircase times pi/4, its mean
-        over all directions (Cauchy-Crofton).
+        Of patches alone a quarter of a patch all along the edge, whose length is that of the staircase times
+        pi/4, its mean over all directions (Cauchy-Crofton). A smooth edge is not known worse, nor better on a
+        film of few patches where the contact has few.
         """
-        if self.shape is not None:
-            patch = self.grid.d / min(self.shape.axes)
-            thin = self.shape.layer < numbers.LAYER * numbers.NARROW_EDGE * patch
-            few = thin and patch * numbers.FEW_FOR_EDGE > 1
-            return self.unsettled + self.radius * self.edge_misfit + (0.25 * self.grid.d if few else 0.0)
         d, loaded = self.grid.d, self.grid.whole(self.found.pressure) > 0
         touching = replace(self.grid, quarter=False).ringed(loaded)
         edges = sum(int(np.count_nonzero(np.diff(touching, axis=axis))) for axis in (0, 1))
-        return float(np.pi / 4 * edges * d * 0.25 * d / (2 * np.pi * self.radius))
+        stairs = float(np.pi / 4 * edges * d * 0.25 * d / (2 * np.pi * self.radius))
+        if self.shape is None:
+            return stairs
+        patch = d / min(self.shape.axes)
+        thin = self.shape.layer < numbers.LAYER * numbers.NARROW_EDGE * patch
+        few = thin and patch * numbers.FEW_FOR_EDGE > 1
+        return self.unsettled + (stairs if few else min(stairs, self.radius * self.edge_misfit))
 
     @cached_property
     def edge_misfit(self) -> float:

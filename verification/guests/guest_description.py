@@ -28,7 +28,7 @@ Level = Annotated[int | float, Field(gt=0)]
 
 
 class Supports(Strict):
-    """What a code can solve: the largest number of coatings, friction, stresses, an elastic ball.
+    """Abilities of a code: the largest number of coatings, friction, stresses, an elastic ball.
 
     ellipsoid : an indenter with two radii of curvature.
     loads : prescribed ones, each a uniform pressure on a disc or on a square.

@@ -22,7 +22,7 @@ from verification.running.case_tasks import kept_result
 from verification.running.checked_files import StoreError
 from verification.running.pool.pool_task import Task
 from verification.running.pool.process_pool import run_tasks
-from verification.running.provenance import commit, cores, hardware, versions
+from verification.running.provenance import commit, cores, fingerprint, hardware, numerical_versions
 
 T = TypeVar("T")
 
@@ -148,5 +148,6 @@ def run_info(command: str, started: datetime.datetime, jobs: int, scheduler: str
         jobs=jobs,
         commit=commit(),
         machine=hardware() + (f" with the workers of {scheduler}" if scheduler else ""),
-        versions=versions(),
+        versions=numerical_versions(),
+        source=fingerprint(packages=()),
     )
