@@ -259,8 +259,8 @@ def test_edge_correction_has_to_be_a_truth_value():
         (0.5, 1e-3, 1e-4),
         (0.7, 1e-3, 1e-4),
         (0.85, 2.3e-3, 1e-4),
-        (0.94, 3.4e-3, 5e-4),
-        (1 / 1.0261, 3.4e-3, 5e-4),
+        (0.94, 2.5e-3, 5e-4),
+        (1 / 1.0261, 2.5e-3, 7.5e-4),
     ],
 )
 def test_punch_with_a_round_edge_is_sneddons(flat, radius, approach):
