@@ -15,8 +15,6 @@ from verification.cases.published_file import PublishedCase
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.terminal import STYLE, one_line, print_error
 from verification.commands.common.terminal_bar import progress_bar
-from verification.credibility import accuracy_study as accuracy_study
-from verification.credibility.accuracy_study import AccuracyStudy
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.case_tasks import kept_result
 from verification.running.checked_files import StoreError
@@ -70,15 +68,6 @@ def kept_results(
         if result is not None:
             kept[case.name] = result
     return kept
-
-
-def kept_study(output: Path) -> AccuracyStudy | None:
-    """The earlier accuracy study where it can be kept; prints why it cannot."""
-    try:
-        return accuracy_study.stored(output)
-    except StoreError as error:
-        print_error(f"{error}; measured again")
-        return None
 
 
 def solve(
