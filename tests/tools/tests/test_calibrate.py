@@ -1,5 +1,6 @@
 """Factors of the uncertainty of patches come from their calibration alone."""
 
+import json
 from pathlib import Path
 
 import calibrate
@@ -7,6 +8,13 @@ import pytest
 
 from semianalytic import numbers
 from verification.commands.common.command_error import CommandError
+
+
+def test_the_table_has_the_factors_of_the_record():
+    found = json.loads(calibrate.RECORD.read_text(encoding="utf-8"))
+    assert found["factors"] == {name: getattr(numbers, name) for name in found["factors"]}
+    assert found["seed"] not in calibrate.JUDGES
+    assert found["largest"] <= 1
 
 
 def test_stored_factors_change_no_other_number(tmp_path):
