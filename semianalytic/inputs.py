@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from semianalytic import numbers
 from semianalytic.coefficients.response import Response, response
-
-COARSEST = 33  # patches a side of the coarsest grid
 
 
 @dataclass(frozen=True)
@@ -38,8 +37,8 @@ class Numerics:
                 raise ValueError(f"{name} = {value}; it must be at least 1")
         if not _is_number(self.tolerance):
             raise ValueError(f"tolerance = {self.tolerance!r}; it has to be a number")
-        if self.patches < COARSEST:
-            raise ValueError(f"patches = {self.patches}; it must be odd and at least {COARSEST}")
+        if self.patches < numbers.COARSEST:
+            raise ValueError(f"patches = {self.patches}; it must be odd and at least {numbers.COARSEST}")
         if not 1e-13 <= self.tolerance < 1:
             raise ValueError(f"tolerance = {self.tolerance:g}; give 1e-13 or more, 1e-8 is the default")
         if self.conversion not in ("split", "plain"):
@@ -191,7 +190,7 @@ def check_finite(**values: float) -> None:
 def check_odd(patches: int) -> None:
     """Raise ValueError for a grid without a patch in its middle."""
     if patches % 2 == 0:
-        raise ValueError(f"patches = {patches}; it must be odd and at least {COARSEST}")
+        raise ValueError(f"patches = {patches}; it must be odd and at least {numbers.COARSEST}")
 
 
 def check_truth_value(**values: bool) -> None:

@@ -1,55 +1,29 @@
 """Solution of the semi-analytical method.
 
-A ``Solution`` carries its coarser companion, the same problem on fewer patches. The uncertainty of a field
-is estimated from the difference of the two at the points required, widened so that a chance agreement of
-the two does not count as accuracy.
+A ``Solution`` carries its coarser companions, the same problem on fewer patches; from their changes, and a
+term for each other cause, follows its uncertainty (``uncertainty``).
 """
 
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from itertools import pairwise
+from functools import cached_property, partial
 from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import distance_transform_cdt, maximum_filter
 
+from semianalytic import numbers
 from semianalytic.inputs import Body, check_finite
 from semianalytic.patch_answer import PatchAnswer, PatchPoints
 from semianalytic.patches.level import Level, interpolated
 from semianalytic.patches.neighbours import Neighbours
 from semianalytic.stresses import fields
-from semianalytic.uncertainty import AT_EDGE, SMOOTH, Uncertainty, safety, unsettled
+from semianalytic.uncertainty import ChangeTable, Uncertainty, of_levels, order_of, refined
 
 Array = NDArray[np.floating]
 BoolArray = NDArray[np.bool_]
-
-# error of the stress below patches, over the peak pressure, against Hankel quadrature: above 4 patches, below
-EVALUATION = (5e-6, 5e-7)
-RINGS = 3e-9  # likewise on rings
-NEAR = 8.0  # patches from the edge, within which the error of its radius is felt
-# of fields under a smooth edge, inside: times the last change, times the change before
-INSIDE = (2.0, 0.2)
-OWN = (2.0, 0.35)  # share of a component in that: times its own change over the largest; the least
-SHEAR = (1.0, 0.25)  # likewise, of a shear stress
-# what the refinement of a smooth edge does not show: of the root mean square of the change of the pressure,
-# and of the peak pressure; felt to a depth of some patches
-FLOOR, REACH = (0.35, 6e-7), 8.0
-DEFLECTED = 0.2  # of that floor over the peak pressure, that the displacement over the approach feels
-# deep down a stress follows the moments of the pressure, the second one a^2 at a given load: share of the
-# relative uncertainty of a, without which an error was 0.92 of the whole in 200 random problems; in full
-# below as many patches
-DEEP = 0.03, 32.0
-MEAN = 0.2  # less as deep, where a stress is a mean over many patches
-# likewise near the edge, of the ripple of the patches, which the shape averages, of the largest change there,
-# and of the pressure a patch inside it, of which the parts of a patch leave a little on every grid; within
-# some patches of it
-RIPPLE, WANDERING, LEFT, TAPER = 0.9, 1.1, 4e-5, 16.0
-# times the misfit of the shape inside, where that is more; falling as the square of the distance
-MISFIT = 2.0
-RESOLUTION = 1e-7  # of the pressure of patches: its response to the gap the iteration leaves
 
 
 @dataclass(frozen=True)
@@ -209,32 +183,22 @@ class Solution:
         return fields.displacement_plane(self._level, self._body.named(body), z)
 
     def _displacement(self, points: Any, stated: bool) -> PatchAnswer:
-        """Displacement [m]; uncertain by its coarser companions, shared as that of the stress, and by the
-        approach."""
+        """Displacement [m]; uncertain by the size of the patches, and as the approach by all else."""
         x, y, z, body = points.x, points.y, points.z, self._body.named(points.body)
-        levels = self._levels if stated else [self._level]
-        u, *coarser = fields.displacement(levels, body, x, y, z)
+        u, *_ = fields.displacement([self._level], body, x, y, z)
         if not stated:
             return PatchAnswer(u)
-        second, third = coarser
-        own = self._change(np.abs(u - second), np.abs(second - third), x, y)
-        own[2] = total = own.max(axis=0)  # u_z moves with the approach
-        share = self._share(own, total, OWN)
-        approach = self._stated.approach
-        total = total + (approach if self._level.smooth() is None else RINGS * self.approach)
-        if self._level.shape is not None:
-            total += approach + DEFLECTED * self._floor / self.peak_pressure * self.approach
-        return PatchAnswer(u, share * total)
+        # the deflection changes by no larger a share than the pressure by what its shape leaves out
+        left = self._other("approach") + self._level.misfit / self.peak_pressure * self.approach
+        return PatchAnswer(u, self._of_patch_size(points, "displacement") + left)
 
     def _pressure(self, points: Any, stated: bool) -> PatchAnswer:
         """Contact pressure [Pa]: with a smooth edge that of its shape, fitted to the patches; of patches
         alone p^2 is interpolated. A given one has no uncertainty.
 
-        With a smooth edge uncertain as the stress. Of patches alone by the largest difference from the
-        companion within two of its patches, times ``safety``, or a sixth of that of the next two; plus the
-        changes of the peak by the other numerical parameters, twice, since they were varied on half the
-        patches and the pressure due to a gap is proportional to the patches; plus ``RESOLUTION`` of the peak;
-        twice the sum.
+        Uncertain by the size of the patches, by the other numerical parameters as the peak, and by the edge:
+        a smooth one by its radius, but for the frame "edge"; that of patches alone by its staircase, and
+        then by ``BY_PATCHES`` of the peak.
         """
         x, y = points.x, points.y
         p = self._level.pressure(x, y)
@@ -242,20 +206,25 @@ class Solution:
             return PatchAnswer(p)
         if self._level.given is not None:
             return PatchAnswer(p, 0 * p)
-        if self._level.shape is not None:
-            return PatchAnswer(p, self._smooth_uncertainty(x, y, at_edge(points)))
-        least = (2 * self._other_than("patch size") + RESOLUTION) * self.peak_pressure
+        other = self._other("peak_pressure")
+        shape = self._level.shape
+        if shape is not None:
+            shift = self._uncertain_reach
+            widened = (shape.widened(s).pressure(x, y) for s in (-shift, shift))
+            moved = np.max([np.abs(q - p) for q in widened], axis=0)
+            U = self._of_patch_size(points, "pressure") + other
+            return PatchAnswer(p, U + np.where(at_edge(points), 0.0, moved))
         changed = interpolated(self.nodes, self._refinement, x, y, order=1)
-        return PatchAnswer(p, 2 * (changed + least) + self._rim(x, y, 0.0))
+        least = other + numbers.BY_PATCHES[1] * self.peak_pressure
+        return PatchAnswer(p, changed + 2 * least + self._rim(x, y, 0.0))
 
     @cached_property
     def _refinement(self) -> Array:
-        """Error of the pressure of patches alone at the nodes [Pa] by their size."""
-        second, third = (level.pressure(*np.ix_(self.nodes, self.nodes)) for level in self._levels[1:])
-        last, before = np.abs(self.patch_pressure - second), np.abs(second - third)
-        reach = 2 * int(np.ceil(2 * self._refined)) + 1
-        difference = np.maximum(safety(self._refined) * last, before / 6)
-        return np.asarray(maximum_filter(difference, size=reach, mode="nearest"))
+        """Uncertainty of the pressure of patches alone at the nodes [Pa] by their size."""
+        nodes, levels = np.ix_(self.nodes, self.nodes), self._levels
+        U = of_levels(levels, [self.patch_pressure, *(level.pressure(*nodes) for level in levels[1:])])
+        reach = 2 * int(np.ceil(2 * levels[0].grid.n / levels[1].grid.n)) + 1
+        return np.asarray(maximum_filter(U, size=reach, mode="nearest"))
 
     def _rim(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
         """Error [Pa] that a staircase makes of an edge: the highest pressure beside it, felt over a patch."""
@@ -265,21 +234,6 @@ class Solution:
         away, x, y = (np.maximum(inside, outside) - 1.0)[1:-1, 1:-1], np.clip(x, *ends), np.clip(y, *ends)
         return highest * d / (d + np.hypot(interpolated(self.nodes, away, x, y, order=1) * d, z))
 
-    def _smooth_uncertainty(self, x: ArrayLike, y: ArrayLike, at_edge: BoolArray) -> Array:
-        """Uncertainty of the pressure [Pa] of a smooth edge: of its shape at equal x/a, and of its radius."""
-        fine = self._level.shape
-        assert fine is not None
-        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        p, second, third = (level.pressure(*level.matching(self._level, x, y)) for level in self._levels)
-        total = self._change(np.abs(p - second), np.abs(second - third), x, y) + self._floor
-        total = total + self._near_ripple(x, y) + self._other_than("patch size") * self.peak_pressure
-        total = np.maximum(total, self._misfit(x, y, 0.0))
-        if at_edge.all():
-            return total
-        shift = self._uncertain_reach
-        moved = [np.abs(fine.widened(s).pressure(x, y) - p) for s in (-shift, shift)]
-        return np.where(at_edge, total, np.maximum(total, np.max(moved, axis=0)))
-
     @cached_property
     def _levels(self) -> list[Level]:
         """The levels of the refinement study, the finest first."""
@@ -288,130 +242,99 @@ class Solution:
         assert coarser.coarser is not None
         return [one._level for one in (self, coarser, coarser.coarser)]
 
-    @property
-    def _refined(self) -> float:
-        """Patches a side over those of the coarser companion."""
-        return self._level.grid.n / self._levels[1].grid.n
-
     def _stress(self, points: Any, stated: bool) -> PatchAnswer:
-        """Stress [Pa], uncertain by its coarser companions.
-
-        The largest difference over the six components of this level and the next, or of the next and the one
-        after, at the same x/a of each. Under a smooth edge times ``INSIDE`` to ``AT_EDGE``, plus ``FLOOR`` of
-        the peak; or the change by the uncertain radius, where that is larger, but for the frame "edge"; of
-        that, a component has its share (``OWN``, ``SHEAR``). Of patches alone times ``safety``, or a third,
-        plus ``EVALUATION``. Both with the changes by the other numerical parameters.
-        """
+        """Stress [Pa]; uncertain by the size of the patches, by the other numerical parameters as the peak
+        pressure, by the evaluation below the patches, and by the edge as the pressure."""
         x, y, z, layer, solid = points.x, points.y, points.z, points.layer, self._body.named(points.body)
-        sigma, *coarser = fields.stress(self._levels if stated else [self._level], solid, x, y, z, layer)
+        sigma, *_ = fields.stress([self._level], solid, x, y, z, layer)
         if not stated:
             return PatchAnswer(sigma)
-        (second, third), floor = coarser, self._other_than("patch size")
-        own = self._change(np.abs(sigma - second), np.abs(second - third), x, y)
-        total = own.max(axis=(0, 1))
-        own[0, 0] = own[1, 1] = np.maximum(own[0, 0], own[1, 1])
-        shear = np.reshape(~np.eye(3, dtype=bool), (3, 3) + (1,) * total.ndim)
-        share = np.where(shear, self._share(own, total, SHEAR), self._share(own, total, OWN))
-        if self._level.smooth() is not None:
-            if self._level.shape is not None:
-                shallow = 1 / (1 + np.asarray(z) / (REACH * self.diagnostics.patch_size)) ** 2
-                least = self._floor + self._near_ripple(x, y) + floor * self.peak_pressure
-                deep = np.minimum(np.asarray(z) / (DEEP[1] * self.diagnostics.patch_size), 1.0)
-                # other coefficients change all pressures together, which is felt far below the contact too
-                other = self._other_than("patch size", "iteration")
-                scale = other + DEEP[0] * deep * self._stated.contact_radius / self.contact_radius
-                total = total + least * shallow + np.abs(sigma).max(axis=(0, 1)) * scale
-                total = np.maximum(total, self._misfit(x, y, z)) * (1 - MEAN * deep)
-            total = total + RINGS * self.peak_pressure
-            if self._level.shape is not None and not (moves := at_edge(points)).all():
-                moved = self._uncertain_edge(solid, x, y, z, layer)
-                return PatchAnswer(sigma, np.where(moves, share * total, np.maximum(share * total, moved)))
-        else:
-            total += floor * self.peak_pressure + self._rim(x, y, z)
+        p0, largest = self.peak_pressure, np.abs(sigma).max(axis=(0, 1))
+        U = self._of_patch_size(points, "stress")
+        U += self._other("peak_pressure", "iteration") / p0 * largest + self._of_iteration(z)
+        if self._level.smooth() is None:
             deep = np.asarray(z) >= 4 * self.diagnostics.patch_size
-            total += np.where(deep, *EVALUATION[::-1]) * self.peak_pressure
-        return PatchAnswer(sigma, share * total)
+            return PatchAnswer(sigma, U + self._rim(x, y, z) + np.where(deep, *numbers.BY_PATCHES[::-1]) * p0)
+        U += numbers.RINGS * p0
+        if self._level.shape is not None and not (moves := at_edge(points)).all():
+            U += np.where(moves, 0.0, self._uncertain_edge(solid, x, y, z, layer))
+        return PatchAnswer(sigma, U)
 
-    def _share(self, own: Array, largest: Array, of: tuple[float, float]) -> Array:
-        """Share of each component in the uncertainty, by its ``own`` `_change` and the ``largest`` of all."""
-        if self._level.smooth() is None:
-            return np.ones(own.shape)
-        ratio = np.divide(own, largest, out=np.ones(own.shape), where=largest > 0)
-        return np.clip(of[0] * ratio, of[1], 1.0)
+    def _of_patch_size(self, points: Any, quantity: str) -> Array:
+        """Uncertainty of a field by the size of the patches, components + points.
 
-    def _change(self, last: Array, before: Array, x: ArrayLike, y: ArrayLike) -> Array:
-        """Error by the patch size from the last change and the one before."""
-        if self._level.smooth() is None:
-            return np.maximum(safety(self._refined) * last, before / 3)
-        share: Array | float = 0.0
-        if self._level.shape is not None:
-            near = self._to_edge(x, y) / (2 * self.diagnostics.patch_size)
-            share = 1 / (1 + near * near)
-        of_last, of_before = (far + (at - far) * share for far, at in zip(INSIDE, AT_EDGE, strict=True))
-        return np.asarray(np.maximum(of_last * last, of_before * before))
-
-    def _near_ripple(self, x: ArrayLike, y: ArrayLike) -> Array:
-        away = self._to_edge(x, y) / (TAPER * self.diagnostics.patch_size)
-        return self._edge_error / (1 + away * away)
-
-    @cached_property
-    def _edge_error(self) -> float:
-        """Error of a pressure with a smooth edge [Pa] next to it, at equal x/a."""
-        shape, left = self._level.shape, 0.0
-        if shape is not None:
-            inside = max(1 - self.diagnostics.patch_size / min(shape.axes), 0.0)
-            left = LEFT * float(shape.pressure(*shape.on_ray(inside, np.zeros(()))))
-        return RIPPLE * self._level.ripple + WANDERING * self._edge_change + left
-
-    @cached_property
-    def _edge_change(self) -> float:
-        """Largest change of the pressure [Pa] within ``TAPER`` patches of a smooth edge, at equal x/a.
-
-        The change crosses zero at places that differ between grids.
+        Under a smooth edge that of a ``ChangeTable``, else of the changes at the points, of all components
+        that of the one that changes most.
         """
-        shapes = [level.shape for level in self._levels if level.shape is not None]
-        width = min(TAPER * self.diagnostics.patch_size / min(shapes[0].axes), 1.0) if shapes else 0.0
-        s = 1 - width * np.linspace(1.0, 0.0, 33) ** 2
-        p = [one.pressure(*one.on_ray(s, np.zeros(s.size))) for one in shapes]
-        changes = [float(np.abs(a - b).max()) for a, b in pairwise(p)]
-        if len(changes) < 2:
-            return sum(changes)
-        last, before = changes
-        return unsettled(last, before, self._level.ripple)
-
-    def _misfit(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
-        """Error [Pa] by what the shape of the pressure misses inside."""
-        distant = (np.square(x) + np.square(y) + np.square(z)) / self.contact_radius**2
-        return np.asarray(MISFIT * self._level.misfit / (1 + distant))
-
-    def _to_edge(self, x: ArrayLike, y: ArrayLike) -> Array:
-        """Distance of points from a smooth edge [m], about."""
+        x, y, z, layer = np.broadcast_arrays(
+            *(np.asarray(v, dtype=float) for v in (points.x, points.y, points.z)),
+            self._body.named(points.body).layer_of(points.z, points.layer),
+        )
         shape = self._level.shape
+        if shape is None:
+            found = self._of_all_levels(quantity, points.body, x, y, z, points.layer)
+            U = of_levels(self._levels, found)
+            return np.broadcast_to(U.max(axis=tuple(range(U.ndim - x.ndim))), U.shape).copy()
+        axes = {"stress": (3, 3), "displacement": (3,), "pressure": ()}[quantity]
+        U = np.empty((int(np.prod(axes)), x.size))
+        share = shape.share(x, y).ravel()
+        for number in np.unique(layer):
+            here = layer.ravel() == number
+            table = self._table(quantity, points.body, int(number))
+            U[:, here] = table(share[here], z.ravel()[here], len(U))
+        return U.reshape((*axes, *x.shape)) + (0.0 if quantity == "displacement" else self._of_shape(x, y, z))
+
+    def _of_shape(self, x: Array, y: Array, z: Array) -> Array:
+        """Error [Pa] of the shape of a smooth pressure on every grid: by its polynomials and at the edge.
+
+        What its polynomials leave out is measured inside, and fades as the field of a load. An edge that is
+        wrong by a share of a patch changes the pressure one patch inside by half that share; at a given
+        load it fades as distance^(-3/2) from there. A traction f p adds 2 f times it to the stress along it.
+        """
+        level, d = self._level, self.diagnostics.patch_size
+        shape = level.shape
         assert shape is not None
-        t, s2, _ = shape.polynomials(x, y)
-        return np.asarray(np.abs(t) / (1 + np.sqrt(s2)) * min(shape.axes))
+        distant = (x * x + y * y + z * z) / self.contact_radius**2
+        inside = float(shape.pressure(*shape.on_ray(max(1 - d / min(shape.axes), 0.0), np.zeros(()))))
+        away = np.maximum(np.hypot(self._to_edge(x, y), z) / d, 1.0)
+        at_edge = (1 + 2 * abs(self._body.friction)) * level.edge_error / (2 * d) * inside
+        return np.asarray(level.misfit / (1 + distant) + at_edge / away**1.5)
+
+    def _of_all_levels(
+        self, quantity: str, body: str, x: Array, y: Array, z: Array, layer: int | None
+    ) -> Array:
+        """A field of the three levels, at the same share of the way to their edge but for displacements."""
+        solid, levels = self._body.named(body), self._levels
+        if quantity == "stress":
+            return fields.stress(levels, solid, x, y, z, layer)
+        if quantity == "displacement":
+            return fields.displacement(levels, solid, x, y, z)
+        return np.stack([level.pressure(*level.matching(levels[0], x, y)) for level in levels])
+
+    def _table(self, quantity: str, body: str, layer: int) -> ChangeTable:
+        """The uncertainty of a field in one layer of a body, made at its first use."""
+        key = quantity, body, layer
+        if key not in self._tables:
+            solid, sliding = self._body.named(body), bool(self._body.friction)
+            interfaces = [0.0, *np.cumsum(solid.thickness), np.inf]
+            top, bottom = (0.0, 0.0) if quantity == "pressure" else interfaces[layer : layer + 2]
+            of = partial(self._of_all_levels, quantity, body, layer=layer if quantity == "stress" else None)
+            self._tables[key] = ChangeTable.of(self._levels, of, top, bottom, sliding)
+        return self._tables[key]
 
     @cached_property
-    def _floor(self) -> float:
-        """Error of a smooth pressure [Pa] wherever the refinement shows less by chance."""
-        shapes = [level.shape for level in self._levels[:2] if level.shape is not None]
-        s = np.linspace(-1, 1, 201)
-        s, angle = np.sqrt(np.abs(s)), np.pi * (s > 0) / 4
-        p = [one.pressure(*one.on_ray(s, angle)) for one in shapes]
-        share, least = FLOOR
-        if len(p) < 2:  # patches alone on the coarser grid: the pressure is as uncertain as the radius
-            return share * self.peak_pressure * self._stated.contact_radius / self.contact_radius
-        return share * float(np.sqrt(np.mean((p[0] - p[1]) ** 2))) + least * self.peak_pressure
+    def _tables(self) -> dict[tuple[str, str, int], ChangeTable]:
+        return {}
 
     def _uncertain_edge(
         self, solid: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
     ) -> Array:
-        """Change of the stress [Pa] by the uncertain radius, within ``NEAR`` patches of the edge; (3, 3) +
-        points."""
+        """Change of the stress [Pa] by the uncertain radius, within ``NEAR_EDGE`` patches of the edge; (3, 3)
+        + points."""
         shift = self._uncertain_reach
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
         distance = np.hypot(self._to_edge(x, y), z)
-        near = distance < NEAR * self.diagnostics.patch_size + shift
+        near = distance < numbers.NEAR_EDGE * self.diagnostics.patch_size + shift
         change = np.zeros((3, 3, *x.shape))
         if near.any():
             change[..., near] = fields.stress_of_uncertain_edge(
@@ -427,8 +350,22 @@ class Solution:
             return stated
         angle = 2 * np.pi * np.arange(64) / 64
         fine, second, third = (np.array(shape.on_ray(np.ones(64), angle)) for shape in shapes if shape)
-        last, before = (float(np.hypot(*change).max()) for change in (fine - second, second - third))
-        return max(stated, SMOOTH[0] * last, SMOOTH[1] * before)
+        moved = [float(np.hypot(*change).max()) for change in (fine - second, second - third)]
+        return max(
+            stated,
+            float(
+                refined(
+                    moved[0], moved[1], self._levels[0].grid.n / self._levels[1].grid.n, order_of(self._level)
+                )
+            )
+            + self._level.edge_error,
+        )
+
+    def _to_edge(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """Distance of points from a smooth edge [m], about."""
+        shape = self._level.shape
+        assert shape is not None
+        return np.abs(1 - shape.share(x, y)) * min(shape.axes)
 
     @property
     def _stated(self) -> Uncertainty:
@@ -436,11 +373,20 @@ class Solution:
             raise ValueError("uncertainty was not estimated; solve with estimate_uncertainty=True")
         return self.uncertainty
 
-    def _other_than(self, *parameters: str) -> float:
-        """Relative uncertainty of the peak pressure by all numerical parameters but those named."""
+    def _other(self, scalar: str, *left_out: str) -> float:
+        """Uncertainty of a scalar by all numerical parameters but the size of the patches."""
         rows = self._stated.budget
-        other = sum(row[2] for row in rows if row[0] == "peak_pressure" and row[1] not in parameters)
-        return other / self.peak_pressure
+        return sum(row[2] for row in rows if row[0] == scalar and row[1] not in ("patch size", *left_out))
+
+    def _of_iteration(self, z: ArrayLike) -> Array:
+        """Uncertainty of a stress [Pa] by the gap g that the iteration leaves.
+
+        It changes the pressure by E* k g/2 at the wavenumber k, at the depth z by exp(-k z) of that: at most
+        1/(e k z) of what the shortest waves on the patches, k = sqrt(2) pi/d, change at the surface.
+        """
+        k = 2**0.5 * np.pi / self.diagnostics.patch_size
+        at_surface = self._other("peak_pressure", "edge", "conversion", "domain")
+        return at_surface / np.maximum(1.0, np.e * k * np.asarray(z, dtype=float))
 
 
 def at_edge(points: Any) -> BoolArray:

@@ -12,7 +12,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from semianalytic import uncertainty
+from semianalytic import numbers, uncertainty
 from semianalytic.coefficients import influence
 from semianalytic.inputs import (
     Body,
@@ -30,25 +30,12 @@ from semianalytic.patches.indenter_profile import Shape, profile_of
 from semianalytic.patches.level import Indenter, Level
 from semianalytic.patches.neighbours import Neighbours, Sphere, hertz_radius
 from semianalytic.solution import Solution
-from semianalytic.uncertainty import WIDER, Uncertainty
+from semianalytic.uncertainty import Uncertainty
 
 Array = NDArray[np.floating]
 Coatings = tuple[tuple[float, float, float], ...]
 Substrate = tuple[float, float]
 Ball = tuple[float, float, Coatings]
-
-FILL = 1.12  # half-width of the grid over the contact radius
-WIDER_SHAPE = 2.0  # first half-width under an indenter that is no sphere, over Hertz's radius
-LARGEST = 0.9  # contact radius over that of the sphere
-BESIDE = 513  # patches a side, at most, of the grid of contacts at neighbouring loads
-# patches a side of the grid that finds the contact radius, and its half-width over that
-ROUGH, ROOMY = 49, 1.5
-LONG = 8.0  # length over width of a contact, beyond which it has more patches
-# patches across a contact, by which the coarse grid tells its width, and fewer than which are no answer
-NARROW, RESOLVED = 4, 12
-FINER = 1.4  # patches a side of the next grid over the last
-LARGEST_GRID = 2801  # patches a side of the last for ``accuracy``,
-LARGE_GRID = 1401  # and where refining no longer lessens the uncertainty
 
 
 def solve(
@@ -82,9 +69,9 @@ def solve(
     edge_correction : for the square root of the pressure at the edge (``edge_correction``). False : constant
     patches alone, whose edge is a staircase.
     accuracy : relative uncertainty of contact radius, approach and peak pressure, for which the patches are
-    refined beyond ``patches`` to at most 2801 a side, 1401 where that stops helping, and until what is
-    stated of the pressure next to the edge, at the same x/a, is at most eight times as much of its peak; the
-    solution states what it reached. None : no refinement.
+    refined beyond ``patches`` to at most 2801 a side, 1401 where that stops helping, and until the
+    pressure, at the same x/a, changes by no more than as much of its peak; the solution states what it
+    reached. None : no refinement.
     gap : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2).
     indenter : another shape than a sphere, (name, numbers [m]) as in ``indenter_profile``, pressed as by
     ``indent`` over a square that is found; refined to at most 513 patches a side, where
@@ -105,17 +92,19 @@ def solve(
         if gap != "parabola":
             raise ValueError(f"gap = {gap!r} is of a sphere, and indenter = {indenter!r}; give one")
         pressed = _of_profile(profile_of(indenter, radius), load, approach, edge_correction)
-        half_width = FILL * WIDER_SHAPE * hertz_radius(radius, load, approach, body)
+        half_width = numbers.FILL * numbers.WIDER_SHAPE * hertz_radius(radius, load, approach, body)
         numerics = replace(numerics, tolerance=max(tolerance, 1e-8))
         return _shaped(pressed, half_width, body, numerics, estimate_uncertainty)
     sphere = Sphere(radius, gap)
     pressed = sphere.indenter(load, approach, edge_correction)
-    half_width = FILL * _contact_radius(radius, pressed, body, numerics)
+    half_width = numbers.FILL * _contact_radius(radius, pressed, body, numerics)
     levels, estimate = _refined(pressed, half_width, body, numerics, estimate_uncertainty)
     solution = Solution.of_levels(levels[-3:], body, estimate, began)
     if levels[-1].shape is None:
         return solution
-    level = next((one for one in levels[-2::-1] if one.shape and one.grid.n <= BESIDE), levels[-1])
+    level = next(
+        (one for one in levels[-2::-1] if one.shape and one.grid.n <= numbers.BESIDE_GRID), levels[-1]
+    )
     error = estimate.approach if estimate else None
     beside = Neighbours(sphere, level, levels[-1].load, solution.approach, error, body, numerics)
     return replace(solution, neighbours=beside)
@@ -127,7 +116,7 @@ def _refined(
     body: Body,
     numerics: Numerics,
     estimate_uncertainty: bool,
-    most: int = BESIDE,
+    most: int = numbers.BESIDE_GRID,
 ) -> tuple[list[Level], Uncertainty | None]:
     """Levels of a refinement study, further ones until the uncertainty meets the accuracy, and that of the
     last.
@@ -146,9 +135,11 @@ def _refined(
     reached: list[float] = []
     while accuracy and not uncertainty.is_met(accuracy, estimate, levels):
         last = levels[-1].grid
-        n = odd(FINER * last.n)
-        reached.append(estimate.relative_to(levels[-1].scalars, uncertainty.MOVING))
-        largest = LARGE_GRID if uncertainty.is_stalled(accuracy, reached, levels) else LARGEST_GRID
+        n = odd(numbers.FINER * last.n)
+        reached.append(estimate.relative_to(levels[-1].scalars))
+        largest = (
+            numbers.LARGE_GRID if uncertainty.is_stalled(accuracy, reached, levels) else numbers.LARGEST_GRID
+        )
         if n > (largest if indenter.round else most):
             break
         grid = replace(last, n=n, d=2 * last.half_width / n)
@@ -175,7 +166,10 @@ def _shaped(
     A contact that is more than ``LONG`` times as long as wide has as many times more patches a side; only
     those of the window around it are used.
     """
-    rough, coarse = replace(indenter, edge_correction=False), replace(numerics, patches=ROUGH, tolerance=1e-4)
+    rough, coarse = (
+        replace(indenter, edge_correction=False),
+        replace(numerics, patches=numbers.ROUGH, tolerance=1e-4),
+    )
     for _ in range(20):
         try:
             found = _pressed(rough, half_width, body, coarse, estimate_uncertainty=False)
@@ -186,21 +180,21 @@ def _shaped(
         sides = np.ptp(loaded, axis=0) + 1
         extent = float(np.abs(found.nodes[loaded]).max()) + found.diagnostics.patch_size
         if extent <= half_width / 3:
-            half_width = ROOMY * extent
-        elif sides.min() < NARROW and coarse.patches < LARGEST_GRID / FINER:
+            half_width = numbers.ROOMY * extent
+        elif sides.min() < numbers.NARROW_WIDTH and coarse.patches < numbers.LARGEST_GRID / numbers.FINER:
             coarse = replace(coarse, patches=odd(2 * coarse.patches))
         else:
             ratio = sides.max() / sides.min()
-            more = max(1.0, ratio / LONG)
-            finer = replace(numerics, patches=min(odd(more * numerics.patches), LARGEST_GRID))
-            most = min(int(more * BESIDE), LARGEST_GRID)
-            pressed = _pressed(indenter, FILL * extent, body, finer, estimate_uncertainty, most)
+            more = max(1.0, ratio / numbers.LONG)
+            finer = replace(numerics, patches=min(odd(more * numerics.patches), numbers.LARGEST_GRID))
+            most = min(int(more * numbers.BESIDE_GRID), numbers.LARGEST_GRID)
+            pressed = _pressed(indenter, numbers.FILL * extent, body, finer, estimate_uncertainty, most)
             across = int(np.ptp(np.argwhere(pressed.patch_pressure > 0), axis=0).min()) + 1
-            if across < RESOLVED:
+            if across < numbers.RESOLVED_WIDTH:
                 raise NotConverged(
                     f"the contact is {ratio:.0f} times as long as wide: {across} patches across, at least "
-                    f"{RESOLVED} are needed; raise patches, to {LARGEST_GRID} at most, or take radii that "
-                    "differ less"
+                    f"{numbers.RESOLVED_WIDTH} are needed; raise patches, to {numbers.LARGEST_GRID} at most, "
+                    "or take radii that differ less"
                 )
             return pressed
     raise NotConverged(f"no contact within {half_width:g} m carries the load; check the indenter")
@@ -212,13 +206,13 @@ def _contact_radius(radius: float, sphere: Indenter, body: Body, numerics: Numer
     coarse = replace(numerics, tolerance=max(1e-3, numerics.tolerance))
     pressed = replace(sphere, edge_correction=False)
     for _ in range(20):
-        grid = Grid(ROUGH, 2 * ROOMY * a / ROUGH)
+        grid = Grid(numbers.ROUGH, 2 * numbers.ROOMY * a / numbers.ROUGH)
         level = nested.solve_on(grid, None, pressed, body, coarse)
         found = level.radius
-        if found > LARGEST * radius:
+        if found > numbers.LARGEST * radius:
             raise ValueError(
                 f"contact radius a = {found:g} m is {found / radius:.2g} of the sphere's radius; "
-                f"the parabolic gap and small strains hold below {LARGEST:g}, and well below 0.1"
+                f"the parabolic gap and small strains hold below {numbers.LARGEST:g}, and well below 0.1"
             )
         if touches_rim(level.found.pressure, level.grid.quarter):
             a = 2 * a
@@ -301,7 +295,7 @@ def _pressed(
     body: Body,
     numerics: Numerics,
     estimate_uncertainty: bool,
-    most: int = BESIDE,
+    most: int = numbers.BESIDE_GRID,
 ) -> Solution:
     began = time.perf_counter()
     levels, estimate = _refined(indenter, half_width, body, numerics, estimate_uncertainty, most)
@@ -344,15 +338,15 @@ def solve_prescribed(
         return Solution.of_levels([level(patches, 1, numerics)], body, None, began)
     sizes = [odd(patches / 4), odd(patches / 2), patches]
     levels = [level(n, 1, numerics) for n in sizes]
-    fine, half, quarter = (one.scalars for one in levels[::-1])
+    half = levels[1].scalars
     variations = {
         name: {scalar: abs(varied.scalars[scalar] - value) for scalar, value in half.items()}
         for name, varied in (
             ("conversion", level(sizes[1], 1, uncertainty.other_conversion(numerics))),
-            ("domain", level(sizes[1], WIDER, numerics)),
+            ("domain", level(sizes[1], numbers.FINER, numerics)),
         )
     }
-    estimate = Uncertainty.from_levels(fine, half, quarter, variations, factor=1.0, share=1 / 6)
+    estimate = Uncertainty.from_levels(levels[::-1], variations)
     return Solution.of_levels(levels, body, estimate, began)
 
 

@@ -1,56 +1,119 @@
-"""Numerical uncertainty by a refinement study over grids, and by variation of the other numerical
-parameters."""
+"""Numerical uncertainty: Roache's refinement study on three grids, and a term for each other cause.
 
-from collections.abc import Sequence
+    U = SAFETY max(e1, e2/r^(3P/2)) / (r^p - 1) + others,    p = ln(e2/e1) / ln r,    P/2 <= p <= P
+
+with e1 and e2 the changes on refining the patches the last time and the time before, r the last refinement,
+P the order of the method and p the one observed. The second term stands for e1 where that is small by chance.
+Changes of a field cross zero where its error does not: e1 and e2 of a field are the largest ones within
+``NEIGHBOURHOOD`` times the distance to the contact edge, at the same share of the way to it.
+
+P. J. Roache, J. Fluids Eng. 116 (1994) 405-413; ASME V&V 20-2009, section 2; limits of p: L. Eca and
+M. Hoekstra, J. Comput. Phys. 262 (2014) 104-130.
+"""
+
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import RegularGridInterpolator
 
+from semianalytic import numbers
 from semianalytic.coefficients import influence
 from semianalytic.inputs import Body, Numerics
 from semianalytic.patches import convolution
 from semianalytic.patches.grid import odd
 from semianalytic.patches.level import Indenter, Level
 
-WIDER = 1.25  # the box that tests the domain over the box in use
-SMOOTH = (3.0, 0.8)  # times the last change, or the one before, of a contact with a smooth edge
-# Times the change before of the contact radius, which the patches at the edge move to and fro; of its own in
-# the budget, since it falls a grid later than the rest.
-RADIUS, MOVING = 1.2, "edge on the patches"
-OUTSIDE = 3.0  # times as much where the shape is fitted near the edge alone
-SECOND = 1e-3  # of approach and peak, times (d/a)^2: what patches leave of deflection and pressure inside
-UNRESOLVED = 0.03  # patches by which the edge of a film thinner than two of them may be wrong
-# Of fields at a smooth edge, at the same x/a: times the last change, times the change before. Over the
-# accuracy asked, the most that this may be of the pressure.
-AT_EDGE, PRESSURE = (8.0, 2.0), 8.0
-# Patches between centre and edge, below which the uncertainty grows as the fourth power of their size: a film
-# of 0.1 a on 15 patches needed 5.4 times.
-COARSE = 24.0
-FALL = 3.0  # of the uncertainty on refining twice, that makes a larger grid worth its time
-SUDDEN = 0.1  # of the ripple, or of the change of the pressure, of the grid before
-PATCHES = (
-    1.0  # of the change before, of patches alone: their edge moves erratically, and no order is observed
-)
+Array = NDArray[np.floating]
+Sampled = Callable[[Array, Array, Array], Array]  # at x, y, z [m]: of all levels, (levels, components, n)
+
+# Of a tensor xx, xy, .. zz, a displacement and a pressure: components that turn into each other about the
+# normal have one uncertainty.
+TURNING = {9: (0, 0, 2, 0, 0, 2, 2, 2, 1), 3: (0, 0, 1), 1: (0,)}
 
 
-def safety(ratio: float) -> float:
-    """Factor on a change on refining the patches ``ratio`` times: at least 1.
+def refined(last: ArrayLike, before: ArrayLike, ratio: float, order: float) -> Array:
+    """U of values that changed by ``last`` on refining the patches ``ratio`` times and by ``before`` then."""
+    e1, e2 = np.abs(last), np.abs(before)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        observed = np.log(e2 / e1) / np.log(ratio)
+    p = np.clip(np.where(np.isnan(observed), order, observed), order / 2, order)
+    return np.asarray(numbers.SAFETY * np.maximum(e1, e2 / ratio ** (1.5 * order)) / (ratio**p - 1))
 
-    At order 3/2, the lowest observed, the error left is the change over ratio^(3/2) - 1.
+
+def of_levels(levels: Sequence[Level], values: ArrayLike) -> Array:
+    """``refined`` of values on three levels, the finest first, along the first axis."""
+    fine, middle, coarse = np.asarray(values)
+    return refined(fine - middle, middle - coarse, levels[0].grid.n / levels[1].grid.n, order_of(levels[0]))
+
+
+def order_of(level: Level) -> float:
+    """Order of the method: the first of patches alone and of a shape that is fitted near the edge alone."""
+    outside = level.shape is not None and level.shape.outside
+    return numbers.ORDERS[1 if outside or level.smooth() is None else 0]
+
+
+@dataclass(frozen=True, eq=False)
+class ChangeTable:
+    """Uncertainty of a field in one layer by the size of the patches, over share of the way and depth.
+
+    values : (kinds, shares, depths), see ``TURNING``.
     """
-    return float(max(1.0, 1 / (ratio**1.5 - 1)))
 
+    shares: Array
+    depths: Array
+    values: Array
 
-def unsettled(last: float, before: float, ripple: float = 0.0) -> float:
-    """The last change, up to four times where it falls by less than half, but for a ripple of the patches."""
-    return last * min(max(1.0, (2 * last / (before + ripple)) ** 2), 4.0) if before else last
+    @classmethod
+    def of(
+        cls, levels: Sequence[Level], sampled: Sampled, top: float, bottom: float, turning: bool
+    ) -> "ChangeTable":
+        """For depths from ``top`` to ``bottom`` [m] below a smooth edge; levels : the finest first.
+
+        turning : whether a field depends on the direction under a round contact, as it does with friction.
+        """
+        shape = levels[0].shape
+        assert shape is not None
+        a, d = min(shape.axes), levels[0].grid.d
+        beside = np.geomspace(d / 2, a, numbers.TABLE) / a
+        shares = np.unique(
+            np.concatenate([[0.0, 1.0], 1 - beside, 1 + beside, 1 + beside[-1] * np.arange(2, 6)])
+        )
+        below = np.concatenate([[0.0], d * 2.0 ** np.arange(np.ceil(np.log2(numbers.DEEPEST * a / d)))])
+        ends = [top, bottom] if np.isfinite(bottom) else [top, max(2 * top, below[-1])]
+        depths = np.unique([*ends, *below[(below > ends[0]) & (below < ends[1])]])
+        angles = np.pi / 4 * np.arange(8)
+        if shape.round:
+            angles = angles[: 5 if turning else 1 : 2]
+        s, angle, z = np.meshgrid(shares, angles, depths, indexing="ij")
+        x, y = shape.on_ray(s.ravel(), angle.ravel())
+        found = sampled(x, y, z.ravel())
+        changes = np.abs(np.diff(found.reshape(len(levels), -1, *s.shape), axis=0)).max(axis=3)
+        kinds = np.array(TURNING[changes.shape[1]])
+        changes = np.stack([changes[:, kinds == k].max(axis=1) for k in range(kinds.max() + 1)])
+        # the largest within the neighbourhood of each node, (kinds, 2, nodes)
+        S, Z = (v.ravel() for v in np.meshgrid(a * (shares - 1), depths, indexing="ij"))
+        reach = np.maximum(numbers.NEIGHBOURHOOD * np.hypot(S, Z), numbers.LEAST_NEIGHBOURHOOD * d)
+        near = np.hypot(S[:, None] - S, Z[:, None] - Z) <= reach[:, None]
+        changes = changes.reshape(*changes.shape[:2], -1)
+        largest = np.stack([np.where(near, one[..., None, :], 0.0).max(axis=-1) for one in changes])
+        U = refined(largest[:, 0], largest[:, 1], levels[0].grid.n / levels[1].grid.n, order_of(levels[0]))
+        return cls(shares, depths, U.reshape(-1, shares.size, depths.size))
+
+    def __call__(self, share: Array, z: Array, components: int) -> Array:
+        """U of each of the ``components`` at points, (components, n)."""
+        places = np.stack([np.clip(share, *self.shares[[0, -1]]), np.clip(z, *self.depths[[0, -1]])], axis=-1)
+        grid = (self.shares, self.depths)
+        U = np.stack([RegularGridInterpolator(grid, one)(places) for one in self.values])
+        return U[list(TURNING[components])]
 
 
 @dataclass(frozen=True)
 class Uncertainty:
     """Numerical uncertainty in SI units; budget : rows (quantity, numerical parameter, value).
 
-    Parameters: patch size, conversion, domain, iteration. The three scalars are the sums of their rows.
+    Parameters: patch size, edge, conversion, domain, iteration. The three scalars are the sums of their rows.
     """
 
     contact_radius: float
@@ -59,95 +122,61 @@ class Uncertainty:
     budget: tuple[tuple[str, str, float], ...]
 
     @classmethod
-    def from_levels(
-        cls,
-        fine: dict[str, float],
-        middle: dict[str, float],
-        coarse: dict[str, float],
-        variations: dict[str, dict[str, float]],
-        *,
-        factor: float,
-        share: float,
-        edge: float = 0.0,
-        inside: float = 0.0,
-        moving: float = 0.0,
-        loaded: float = 0.0,
-    ) -> "Uncertainty":
-        """From the results on three grids, and the changes by one other parameter that is less accurate.
-
-        Patch size: ``factor`` times the change to the finest grid, or ``share`` of the change before where
-        the last is small by chance, or ``edge``, the error of the contact radius by patches that the edge
-        cuts [m], or ``inside``, that of deflection and pressure there, relative.
-        ``moving`` : share of the change before that the contact radius has at least, in a row of its own.
-        ``loaded`` : of the edge, see ``Level.load_at_edge``; 0 of a smooth one.
-        """
-        moved = edge / fine["contact_radius"]
-        # an error of the edge is of the second order in the approach, which is stationary in the contact's
-        # area
-        least = {
-            "contact_radius": edge,
-            "approach": fine["approach"] * (inside + loaded * moved + moved**2),
-            "peak_pressure": fine["peak_pressure"] * inside,
-        }
+    def from_levels(cls, levels: Sequence[Level], others: dict[str, dict[str, float]]) -> "Uncertainty":
+        """From three levels, the finest first, and the changes by each ``other`` numerical parameter."""
         rows = []
-        for name, value in fine.items():
-            last, before = abs(value - middle[name]), abs(middle[name] - coarse[name])
-            found = np.max([factor * last, share * before, least.get(name, 0.0)])
-            rows.append((name, "patch size", float(found)))
-            rows += [(name, varied, change[name]) for varied, change in variations.items()]
-            if moving and name == "contact_radius":
-                rows.append((name, MOVING, float(max(0.0, moving * before - found))))
+        for name in levels[0].scalars:
+            size = of_levels(levels, [level.scalars[name] for level in levels])
+            rows.append((name, "patch size", float(size)))
+            rows += [(name, varied, float(change[name])) for varied, change in others.items()]
         names = ("contact_radius", "approach", "peak_pressure")
         total = {name: sum(row[2] for row in rows if row[0] == name) for name in names}
         return cls(**total, budget=tuple(rows))
 
-    def relative_to(self, scalars: dict[str, float], without: str = "") -> float:
-        """The largest uncertainty over its scalar, but for what is due to the origin ``without``."""
-        return max(
-            sum(value for name, origin, value in self.budget if name == scalar and origin != without) / size
-            for scalar, size in scalars.items()
-        )
+    def relative_to(self, scalars: dict[str, float]) -> float:
+        """The largest uncertainty over its scalar."""
+        return max(getattr(self, name) / size for name, size in scalars.items())
 
 
 def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Numerics) -> Uncertainty:
-    """Refinement study of the last three levels; conversion and domain on the coarsest, iteration on the
+    """Refinement study of the last three levels; conversion and domain on the coarsest, the others on the
     finest."""
-    fine, middle, coarse = (level.scalars for level in levels[:-4:-1])
     last, varied = levels[-1], levels[-3]
-    variations = {
+    others = {
+        "edge": _of_edge(last),
         "conversion": _by_other_coefficients(varied, body, numerics, other_conversion(numerics), 1.0),
-        "domain": _by_other_coefficients(varied, body, numerics, numerics, WIDER),
+        "domain": _by_other_coefficients(varied, body, numerics, numerics, numbers.FINER),
         "iteration": _of_iteration(last, indenter),
     }
-    edge, inside, moving = last.staircase, 0.0, 0.0
-    factor, share = safety(last.grid.n / levels[-2].grid.n), PATCHES
-    if last.shape:
-        patch = last.grid.d / min(last.shape.axes)
-        few = max(1.0, COARSE * patch) ** 4
-        factor, share = np.multiply(SMOOTH, few * (OUTSIDE if last.shape.outside else 1.0))
-        edge, inside, moving = few * edge, SECOND * patch**2, few * RADIUS
-        # patches too large for what happens within the thickness of a film
-        if body.response is not None and body.response.depth < 2 * last.grid.d:
-            edge = max(edge, UNRESOLVED * last.grid.d)
-    return Uncertainty.from_levels(
-        fine,
-        middle,
-        coarse,
-        variations,
-        factor=factor,
-        share=share,
-        edge=edge,
-        inside=inside,
-        moving=moving,
-        loaded=0.0 if last.shape else last.load_at_edge,
-    )
+    return Uncertainty.from_levels(levels[:-4:-1], others)
+
+
+def _of_edge(level: Level) -> dict[str, float]:
+    """Effect of an edge that its own grid leaves uncertain: between the centres of patches, or a staircase.
+
+    The approach is stationary in the contact's area: it changes as the square of the pressure where the edge
+    may be, which is of the second order at a smooth edge and of the first at that of a punch. Patches that a
+    smooth edge cuts leave ``SECOND`` times the square of their share of the radius.
+    """
+    moved, shape, left, at_edge = level.edge_error / level.radius, level.shape, 0.0, level.load_at_edge
+    if shape is not None:
+        left = numbers.SECOND * (level.grid.d / min(shape.axes)) ** 2
+        p = shape.pressure(*shape.on_ray(max(1 - moved, 0.0), np.pi / 4 * np.arange(8)))
+        at_edge = float(np.mean(p**2)) / 2 / level.scalars["peak_pressure"] ** 2
+    of_peak = left + moved**2 + 2 * level.unsettled / level.radius if shape is not None else 0.0
+    return {
+        "contact_radius": level.edge_error,
+        "approach": level.found.approach * (left + at_edge * moved + moved**2),
+        "peak_pressure": level.scalars["peak_pressure"] * of_peak,
+    }
 
 
 def is_met(accuracy: float, estimate: Uncertainty, levels: list[Level]) -> bool:
     """Whether the scalars, and the pressure under a smooth edge, are as accurate as asked, relative."""
     last, before = (_pressure_change(levels[k], levels[k - 1]) for k in (-1, -2))
-    at_edge = max(AT_EDGE[0] * last, AT_EDGE[1] * before) / levels[-1].scalars["peak_pressure"]
-    return estimate.relative_to(levels[-1].scalars) <= accuracy and at_edge <= PRESSURE * accuracy
+    scalars = levels[-1].scalars
+    settled = max(last, before / 4) <= accuracy * scalars["peak_pressure"]
+    return estimate.relative_to(scalars) <= accuracy and settled
 
 
 def is_stalled(accuracy: float, reached: Sequence[float], levels: list[Level]) -> bool:
@@ -155,9 +184,11 @@ def is_stalled(accuracy: float, reached: Sequence[float], levels: list[Level]) -
 
     They do where a grid is the first to resolve the pressure at the edge: one more shows it.
     """
-    resolved = levels[-1].ripple < SUDDEN * levels[-2].ripple
-    settled = _pressure_change(*levels[:-3:-1]) < SUDDEN * _pressure_change(*levels[-2:-4:-1])
-    return reached[-1] > accuracy and FALL * reached[-1] > reached[-3:][0] and not (resolved or settled)
+    resolved = levels[-1].ripple < numbers.SUDDEN * levels[-2].ripple
+    settled = _pressure_change(*levels[:-3:-1]) < numbers.SUDDEN * _pressure_change(*levels[-2:-4:-1])
+    return (
+        reached[-1] > accuracy and numbers.FALL * reached[-1] > reached[-3:][0] and not (resolved or settled)
+    )
 
 
 def _pressure_change(fine: Level, coarse: Level) -> float:

@@ -1,8 +1,8 @@
 """Love's rectangle under pressure, on a half-space.
 
 Under unit pressure on a rectangle the surface deflects by u_z = (1-nu)/(2 pi G) V, V = int int 1/rho with rho
-= |point - source|: a sum over its corners, which loses digits as (distance/side)^2; beyond ``FAR`` sides a
-series of its moments.
+= |point - source|: a sum over its corners, which loses digits as
+(distance/side)^2; beyond ``FAR_SIDES`` sides a series of its moments.
 
 Sources
 -------
@@ -15,11 +15,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.floating]
+from semianalytic import numbers
 
-FAR = 25.0  # sides; where the errors of closed form and series cross
-TOGETHER = 32  # rows of the table that fit the processor's cache
-TINY = 1e-100  # floor of squared lengths: real infinities (edges at z = 0) become finite, alike on both sides
+Array = NDArray[np.floating]
 
 
 def surface_deflection(n: int, d: float, depth: float = 0.0) -> Array:
@@ -27,16 +25,16 @@ def surface_deflection(n: int, d: float, depth: float = 0.0) -> Array:
 
         V(i d, j d, depth),  i, j = 0..n-1;   u_z = (1-nu)/(2 pi G) V at depth 0
 
-    Nearer than ``FAR`` sides Love (1929) eq. 4, with every corner value used by the four squares that share
-    it. Beyond, 1/rho and its even derivatives of orders 2, 4 times the moments of the square: no
+    Nearer than ``FAR_SIDES`` sides Love (1929) eq. 4, with every corner value used by the four squares that
+    share it. Beyond, 1/rho and its even derivatives of orders 2, 4 times the moments of the square: no
     cancellation, within 5e-12 of every entry however large the table.
 
     d, depth [m].  Returns V [m], shape (n, n).
     """
     V: Array = np.empty((n, n))
-    near = min(int(np.ceil(np.sqrt(max((FAR * d) ** 2 - depth**2, 0.0)) / d)), n)
+    near = min(int(np.ceil(np.sqrt(max((numbers.FAR_SIDES * d) ** 2 - depth**2, 0.0)) / d)), n)
     x = np.arange(n) * d
-    for i, j in pairwise([0, *range(near, n, TOGETHER), n]):
+    for i, j in pairwise([0, *range(near, n, 32), n]):
         first = max(i, near)
         V[i:j, first:] = _potential_series(x[i:j, None], x[first:], depth, d * d)
         V[first:, i:j] = V[i:j, first:].T
@@ -68,7 +66,7 @@ def _potential_series(x: Array, y: Array, z: float, a: float) -> Array:
 
 def _potential_corner(X: Array, Y: Array, z: float) -> Array:
     """V."""
-    sx, sy = np.maximum(X * X + z * z, TINY), np.maximum(Y * Y + z * z, TINY)
-    rho = np.sqrt(np.maximum(sx + Y * Y, TINY))
+    sx, sy = np.maximum(X * X + z * z, numbers.TINY), np.maximum(Y * Y + z * z, numbers.TINY)
+    rho = np.sqrt(np.maximum(sx + Y * Y, numbers.TINY))
     V: Array = X * np.asinh(Y / np.sqrt(sx)) + Y * np.asinh(X / np.sqrt(sy)) - z * np.atan2(X * Y, z * rho)
     return V

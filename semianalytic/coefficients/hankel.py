@@ -29,9 +29,11 @@ from numpy.typing import NDArray
 from scipy.fft import fht
 from scipy.special import factorial
 
+from semianalytic import numbers
+
 Array = NDArray[Any]
 
-_STEP = np.log(3e10) / 1499
+_STEP = np.log(numbers.HANKEL_SPAN) / (numbers.HANKEL_POINTS - 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,16 +50,10 @@ def _log_grid(n: int) -> LogGrid:
     return LogGrid(centre * powers, powers / centre)
 
 
-USUAL = _log_grid(1500)  # wavenumbers from 1e-8, radii to 1e8
-LONG = _log_grid(1929)  # from 1e-11, to 1e11: for an F that changes over lengths of more than 1e4 L
-
-
-NEAR = 0.1  # r / L
-_TERMS = 8  # the rest is below NEAR^16
-
-# per order, balances the truncation errors at the two ends of the grid
-_BIAS = (0.7, 0.25, 0.0, 0.0)
-_BIAS_OVER_K = (0.25, 0.0, -0.25, -0.25)
+USUAL = _log_grid(numbers.HANKEL_POINTS)  # wavenumbers from 1e-8, radii to 1e8
+LONG = _log_grid(
+    numbers.HANKEL_LONG
+)  # from 1e-11, to 1e11: for an F that changes over lengths of more than 1e4 L
 
 
 def hankel(F: Array, order: int, scale: float, *, over_k: bool = False, grid: LogGrid = USUAL) -> Array:
@@ -81,7 +77,7 @@ def hankel(F: Array, order: int, scale: float, *, over_k: bool = False, grid: Lo
         g = g + height * powers[first] + incline * powers[first + 1]
         rest = rest - (height + incline * x) * np.exp(-x * L)
     # offset 0 keeps the radii free of the order; the ringing it allows stays below the errors above
-    bias = (_BIAS_OVER_K if over_k else _BIAS)[order]
+    bias = (numbers.HANKEL_BIAS_OVER_K if over_k else numbers.HANKEL_BIAS)[order]
     tail = fht(rest * x**first, _STEP, order, offset=0.0, bias=bias)
     if order == 0:
         # the periodic image of r >> L affects small r less with a smaller bias
@@ -95,19 +91,19 @@ def hankel(F: Array, order: int, scale: float, *, over_k: bool = False, grid: Lo
 def near_axis(
     F: Array, order: int, scale: float, r: Array, *, over_k: bool = False, grid: LogGrid = USUAL
 ) -> Array:
-    """g(r) as `hankel`, at r [m] up to ``NEAR`` L: int F J_m(kr) k dk by the moments of F.
+    """g(r) as `hankel`, at r [m] up to ``NEAR_AXIS`` L: int F J_m(kr) k dk by the moments of F.
 
         J_m(x) = sum_j (-1)^j (x/2)^(m+2j) / (j! (m+j)!),    Watson (1944), 3.1
 
     r : (nr,).  Returns (..., nr).
     """
     x, s = grid.wavenumbers, np.asarray(r) / scale
-    powers = order + 2 * np.arange(_TERMS)
+    powers = order + 2 * np.arange(numbers.NEAR_AXIS_TERMS)
     exponent = powers + (1 if over_k else 2)
     # a trapezoidal rule in log k, spectrally accurate, plus the part below the first wavenumber
     weight = _STEP * x[:, None] ** exponent
     weight[0] = weight[0] / 2 + x[0] ** exponent / exponent
-    j = np.arange(_TERMS)
+    j = np.arange(numbers.NEAR_AXIS_TERMS)
     moments = (F @ weight) * (-1.0) ** j / (factorial(j) * factorial(order + j))
     g: Array = moments @ (s / 2) ** powers[:, None]
     return g / (2 * np.pi * (scale if over_k else scale**2))

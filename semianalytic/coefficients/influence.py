@@ -24,6 +24,7 @@ import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
+from semianalytic import numbers
 from semianalytic.coefficients import halfspace
 from semianalytic.coefficients.response import Response
 from semianalytic.inputs import Body, Numerics
@@ -31,9 +32,6 @@ from semianalytic.stresses.ring_quadrature import gauss_legendre
 
 Array = NDArray[np.floating]
 Function = Callable[[Array], Array]
-
-DIGITS = 1e-11  # tolerance of the quadrature over a patch, relative to the value at its centre
-SMOOTH = 12.0  # patches from the nearest singularity, beyond which finite differences average a patch
 
 
 def surface_coefficients(n: int, d: float, body: Body, numerics: Numerics) -> Array:
@@ -72,8 +70,8 @@ def remainder_coefficients(n: int, d: float, response: Response, *, points: int 
     near = 2 * response.first / d  # g is singular no nearer than the image of the surface, at depth 2 h
     mean = _average(_average(_octant(g, n + 3, d)).T).T
     mean *= d * d
-    if near < SMOOTH:
-        corner = _corner(g, on_disc, min(int(SMOOTH), n), d, near)
+    if near < numbers.AVERAGED:
+        corner = _corner(g, on_disc, min(int(numbers.AVERAGED), n), d, near)
         mean[: len(corner), : len(corner)] = corner
     return mean
 
@@ -84,7 +82,7 @@ def _corner(g: Function, on_disc: Function, n: int, d: float, near: float) -> Ar
     near : distance to the nearest singularity of g, in patches.
     """
     mean, inner = np.empty((n, n)), 0
-    for edge in (3.0, SMOOTH):
+    for edge in (3.0, numbers.AVERAGED):
         outer = min(int(np.ceil(edge)), n)
         reach = np.hypot(near, max(inner - 1, 0.5))
         _gauss_block(mean, g, d, inner, outer, reach)
@@ -159,7 +157,7 @@ def _gauss_block(mean: Array, g: Function, d: float, inner: int, outer: int, rea
     reach : distance to the nearest singularity of g in patches, sets the order: error rho^(-2 order).
     """
     t = 2 * max(reach, 0.05)
-    order = int(np.ceil(-np.log(DIGITS) / (2 * np.log(t + np.hypot(t, 1)))))
+    order = int(np.ceil(-np.log(numbers.PATCH_DIGITS) / (2 * np.log(t + np.hypot(t, 1)))))
     s, w = gauss_legendre(max(order, 3), -0.5, 0.5)
     i, j = np.tril_indices(outer)
     ring = i >= inner

@@ -32,15 +32,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from semianalytic import numbers
 from semianalytic.coefficients.frf import Load, displacement_frf, stress_frf
-from semianalytic.coefficients.hankel import LONG, NEAR, USUAL, hankel, near_axis
+from semianalytic.coefficients.hankel import LONG, USUAL, hankel, near_axis
 from semianalytic.inputs import Body
 
 Array = NDArray[Any]
 Response = Callable[[Load], Array]
 
-KEPT = 4  # tables of a body, of up to 14 depths and 9 MB each
-_INNER = np.linspace(0, NEAR, 60, endpoint=False)  # r / L of the table, as dense as beyond
+_INNER = np.linspace(
+    0, numbers.NEAR_AXIS, numbers.NEAR_AXIS_RADII, endpoint=False
+)  # r / L of the table, as dense as beyond
 
 
 @dataclass(frozen=True)
@@ -86,7 +88,7 @@ def _tables(
     # a film E, h stretches on a base E' over a length h E/E', bends over less
     moduli = [material[0] for material in body.materials]
     grid = USUAL if sum(body.thickness) * max(moduli) / min(moduli) / scale < 1e4 else LONG
-    beyond = grid.radii >= NEAR
+    beyond = grid.radii >= numbers.NEAR_AXIS
     response = partial(frf, grid.wavenumbers / scale, z, layer, **body.layers, excess=excess)
     radial = []
     for F, order in columns(lambda load: response(load=load), body.friction):
@@ -95,7 +97,7 @@ def _tables(
         radial.append(np.concatenate([inner, outer], axis=1))
     nodes = np.arcsinh(np.concatenate([_INNER, grid.radii[beyond]]))
     found = [PointForce(CubicSpline(nodes, table), scale) for table in np.stack(radial, axis=-1)]
-    while len(body.tables) >= KEPT:
+    while len(body.tables) >= numbers.KEPT_TABLES:
         del body.tables[next(iter(body.tables))]
     body.tables[key] = found
     return found

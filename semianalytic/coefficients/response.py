@@ -22,21 +22,19 @@ from numpy.typing import NDArray
 from scipy.fft import fht, fhtoffset
 from scipy.interpolate import CubicSpline, PPoly, make_interp_spline
 
+from semianalytic import numbers
 from semianalytic.coefficients import frf
 
 Array = NDArray[np.floating]
 Function = Callable[[Array], Array]
 Layers = tuple[float, dict[str, Any]]
 
-SAMPLES = 2000  # of the compliance, for quintic splines: to rounding at any ratio of moduli
-NEGLIGIBLE = 1e-12  # of the compliance, below which the layers no longer reflect
-
 
 def response(bodies: Sequence[Layers]) -> "Response":
     """The response of ``bodies``, at least one: E*/E_i* and the layers of each, as keywords of `frf`."""
     thickness = [[h for _, _, h in layers["coatings"]] for _, layers in bodies]
     first, total = min(h[0] for h in thickness), max(sum(h) for h in thickness)
-    x = np.linspace(np.log(1e-10 / total), np.log(40 / first), SAMPLES)
+    x = np.linspace(np.log(1e-10 / total), np.log(40 / first), numbers.COMPLIANCE_SAMPLES)
     samples = sum(share * frf.compliance_excess(np.exp(x), **layers) for share, layers in bodies)
     spline = PPoly.from_spline(make_interp_spline(x, samples, k=5))
     low, high = np.exp(x[[0, -1]])
@@ -69,7 +67,7 @@ class Response:
         reflects at the bottom of the last one only. Far below the coatings without a reflection.
         """
         k = np.geomspace(1e-2 / self.total, 40 / self.first, 4000)
-        felt = np.flatnonzero(np.abs(self.excess(k)) > NEGLIGIBLE)
+        felt = np.flatnonzero(np.abs(self.excess(k)) > numbers.NEGLIGIBLE)
         return 14.0 / float(k[felt[-1] if felt.size else 0])
 
     @cached_property

@@ -12,35 +12,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from semianalytic import numbers
 from semianalytic.coefficients import influence
 from semianalytic.edge import edge_shape, smooth_edge
 from semianalytic.edge.edge_shape import Shape, Step
 from semianalytic.patches.level import Level, LevelProblem
 
 Array = NDArray[np.floating]
-
-ROUNDS = 10  # at most
-HELD = 2  # rounds from patches alone in which the edge is held
-STILL = 2e-5  # of a patch; 5e-4 left the pressure of four layers on three 3e-7 p0 too low, with one sign
-# patches by which the pressures near a smooth edge may miss f; in the first rounds
-MISFIT, COARSE_MISFIT = 0.3, 2.0
-LOST = 0.2  # of the load, the most that constant patches miss of a pressure with a smooth edge
-INNER = 3e-3  # of the peak, that f may miss inside: ellipses 3e-5, a kink of the indenter's slope 0.1
-OUTER_TERMS = 6  # polynomials of a pressure that is fitted near the edge alone
-# the highest harmonic of a shape fitted to patches alone, or patches between centre and edge for each; finer
-# grids have all, as has a contact without a plane of symmetry
-LOW, WAVES = 6, 4.0
-NARROW = 5  # patches between centre and edge, below which the edge is not resolved
-FEW_PATCHES = 32  # between centre and edge, of a grid whose rejection of a shape the next one tries again
-# polynomials: of an uncoated body; of a layer, the second number for each of asinh(1/e)
-FEW, LAYERED = 3, (6.0, 4.6)
-# patches in a of the coarsest of three default grids; one 1.4 times as fine has one polynomial more, so that
-# the change on refining holds what the polynomials leave out
-USUAL = 57
-LAYER = 7.0  # e over h/a: 4 is best for one coating, 8 for a stack, whose images lie farther away too
-RESOLVED = 1.75  # polynomials for each sqrt(patches in a times e asinh(1/e)); under stacks 2 did not converge
-MIRRORED = 1e-12  # of the depth of the indenter, by which a gap that is even in y may miss it
-THICK = 100.0  # e of a layer so thick that it does not matter
 
 
 def corrected(problem: LevelProblem) -> Level:
@@ -51,9 +29,9 @@ def corrected(problem: LevelProblem) -> Level:
     before = problem.before
     start = None if before is None else before.shape
     if before is not None and start is not None and start.outside:
-        start = None if min(start.axes) < FEW_PATCHES * before.grid.d else start
+        start = None if min(start.axes) < numbers.FEW_PATCHES * before.grid.d else start
     if start is not None:
-        terms = OUTER_TERMS if start.outside else _terms(start, problem.grid.d)
+        terms = numbers.OUTER_TERMS if start.outside else _terms(start, problem.grid.d)
         level = _rounds(problem, start.with_terms(terms), None)
         if level is not None:
             return level
@@ -63,7 +41,9 @@ def corrected(problem: LevelProblem) -> Level:
     if shape is None:
         return alone
     # all of the pressure or, where its inside is not smooth, what is near the edge
-    outside = () if problem.indenter.round else (replace(shape.with_terms(OUTER_TERMS), outside=True),)
+    outside = (
+        () if problem.indenter.round else (replace(shape.with_terms(numbers.OUTER_TERMS), outside=True),)
+    )
     for first in (shape, *outside):
         level = _rounds(problem, first, p)
         if level is not None:
@@ -80,42 +60,47 @@ def _rounds(problem: LevelProblem, shape: Shape, p: Array | None) -> Level | Non
     grid, (x, y) = problem.grid, problem.centres
     near, weight, convolutions = _near_influence(problem), grid.weight(problem.gap.shape), 0
     step: Step | None = None
+    moved, unsettled = np.inf, 0.0
     fit = partial(edge_shape.fitted, x=x, y=y, deflection=problem.deflection, weight=weight, patch=grid.d)
     fresh = p is not None
     if p is None:  # f is smoother than the interpolated pressure of the patches
         p = problem.first_guess() if shape.outside else shape.pressure(x, y)
-    for number in range(ROUNDS):
+    for number in range(numbers.ROUNDS):
         # the patches alone know the radius better than the shape of their pressure near the edge
-        if fresh and number < HELD:
+        if fresh and number < numbers.HELD_ROUNDS:
             shape, _ = fit(shape, p, fixed_edge=True)
-        elif fresh and number == HELD:
+        elif fresh and number == numbers.HELD_ROUNDS:
             for _ in range(2):
                 shape, _ = fit(shape, p)
         edge = smooth_edge.edge_patches(shape, p, grid, problem.window)
-        if not edge.misfit < COARSE_MISFIT and number >= HELD:
+        if not edge.misfit < numbers.COARSE_MISFIT and number >= numbers.HELD_ROUNDS:
             return None
         u, missing = smooth_edge.beyond_centres(edge, p, grid, problem.deflection, near)
-        if not abs(missing) < LOST * grid.force(p):
+        if not abs(missing) < numbers.LOST * grid.force(p):
             return None
         level = problem.solve(u, missing, start=p)
         convolutions += level.convolutions + 1
         p = level.found.pressure
-        if fresh and number < HELD:
+        if fresh and number < numbers.HELD_ROUNDS:
             continue
         shape, step = fit(shape, p, before=step)
+        before = moved
         moved = float(np.abs(step.change[-len(shape.harmonics) :]).sum()) * min(shape.axes)
-        if moved < STILL * grid.d:
+        # rounds converge as a geometric series; no faster than the slowest seen, no slower than by halves
+        fall = min(max(moved / before, 0.2), 0.5)
+        unsettled = moved * fall / (1 - fall)
+        if moved < numbers.STILL * grid.d:
             break
     edge = smooth_edge.edge_patches(shape, p, grid, problem.window)
     edge = replace(edge, parts=edge.parts.mean(axis=1, keepdims=True))  # all that is needed from now on
-    if not edge.misfit < MISFIT or min(shape.axes) < NARROW * grid.d:
+    if not edge.misfit < numbers.MISFIT or min(shape.axes) < numbers.NARROW_EDGE * grid.d:
         return None
     if not (problem.indenter.round or shape.outside):
         missed = np.where(p > 0, np.abs(p - shape.pressure(x, y)), 0.0)
         missed[edge.i, edge.j] = 0.0
-        if missed.max() > INNER * p.max():
+        if missed.max() > numbers.INNER_MISFIT * p.max():
             return None
-    return replace(level, shape=shape, edge=edge, convolutions=convolutions)
+    return replace(level, shape=shape, edge=edge, convolutions=convolutions, unsettled=unsettled)
 
 
 def _start(problem: LevelProblem, p: Array) -> Shape | None:
@@ -129,7 +114,7 @@ def _start(problem: LevelProblem, p: Array) -> Shape | None:
         harmonics = edge_shape.ROUND
     elif grid.quarter:
         harmonics = edge_shape.EVEN
-    elif np.allclose(problem.gap, problem.gap[:, ::-1], rtol=0.0, atol=MIRRORED * problem.depth):
+    elif np.allclose(problem.gap, problem.gap[:, ::-1], rtol=0.0, atol=numbers.ROUNDING * problem.depth):
         harmonics = edge_shape.ACROSS
     whole = grid.whole(p)
     x, y = grid.whole_centres(problem.window)
@@ -139,13 +124,17 @@ def _start(problem: LevelProblem, p: Array) -> Shape | None:
         whole = np.where(x[:, None] > 0, whole, 0.0)
     if not _is_island(whole > 0):
         return None
-    shape = edge_shape.start(whole, x[:, None], y, harmonics, FEW, grid.d**2)
-    if min(shape.axes) < NARROW * grid.d:
+    shape = edge_shape.start(whole, x[:, None], y, harmonics, numbers.FEWEST_TERMS, grid.d**2)
+    if min(shape.axes) < numbers.NARROW_EDGE * grid.d:
         return None
     both = problem.body.response
-    layer = LAYER * both.depth / min(shape.axes) if both else np.inf
-    shape = replace(shape, layer=layer if layer < THICK else np.inf, twin=twin)
-    highest = np.inf if harmonics == edge_shape.FULL else max(LOW, min(shape.axes) / grid.d / WAVES)
+    layer = numbers.LAYER * both.depth / min(shape.axes) if both else np.inf
+    shape = replace(shape, layer=layer if layer < numbers.THICK else np.inf, twin=twin)
+    highest = (
+        np.inf
+        if harmonics == edge_shape.FULL
+        else max(numbers.LOW_HARMONICS, min(shape.axes) / grid.d / numbers.PATCHES_A_WAVE)
+    )
     return shape.with_terms(_terms(shape, grid.d), highest)
 
 
@@ -169,17 +158,22 @@ def _terms(shape: Shape, d: float) -> int:
     patches, so that a refinement study shows what the polynomials leave out too.
     """
     if np.isinf(shape.layer):
-        return FEW
+        return numbers.FEWEST_TERMS
     patches, e = min(shape.axes) / d, shape.layer
     length = float(np.arcsinh(1 / e))
-    finer = max(0.0, float(np.log(patches / USUAL) / np.log(1.4)))
-    wanted = LAYERED[0] + LAYERED[1] * length + finer
-    return int(max(FEW, min(wanted, patches / 4, RESOLVED * np.sqrt(e * length * patches))))
+    finer = max(0.0, float(np.log(patches / numbers.USUAL_RADIUS) / np.log(1.4)))
+    wanted = numbers.LAYERED[0] + numbers.LAYERED[1] * length + finer
+    return int(
+        max(
+            numbers.FEWEST_TERMS,
+            min(wanted, patches / 4, numbers.RESOLVED_TERMS * np.sqrt(e * length * patches)),
+        )
+    )
 
 
 def _near_influence(problem: LevelProblem) -> Array:
     """``smooth_edge.near_influence`` of the patches of a problem."""
-    near, parts, d = smooth_edge.NEAR, smooth_edge.PARTS, problem.grid.d
+    near, parts, d = numbers.NEAR_PARTS, numbers.PARTS, problem.grid.d
     of_patch, of_part = (
         influence.surface_coefficients(n, side, problem.body, problem.numerics)
         for n, side in ((near + 2, d), ((near + 1) * parts, d / parts))

@@ -28,6 +28,8 @@ from numpy.polynomial import legendre
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter
 
+from semianalytic import numbers
+
 Array = NDArray[np.floating]
 
 ROUND = (0,)  # harmonics of a contact that is round,
@@ -35,13 +37,6 @@ EVEN = (0, 2, 4, 6, 8, 10, 12)  # even in x and in y, the last for the ends of a
 HALF = tuple(range(9))  # even in y, beside its mirror image,
 ACROSS = (0, 1, 2, 3, 4, 6, 8, 9, 10, 12)  # even in y,
 FULL = (*ACROSS, *(-n for n in ACROSS[1:]))  # any
-DAMPING = 0.8  # share of the first step of a fit
-FADED = 0.15, 0.4  # t over which a pressure fitted near the edge alone, and its fit, fade to the inside
-BLUNT = 0.7  # patches from the edge, nearer than which the column of the edge, infinite there, is constant
-SLACK = 0.3  # patches by which the edge may pass the centre of a loaded or of an unloaded patch
-FAR = -0.6  # t beyond which the contour is an ellipse
-WIDEST = 0.3  # largest change of an axis, as a coefficient c
-ANGLES = 256  # at which a contour that is no ellipse is sampled
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +68,9 @@ class Shape:
         """Of the disc of the same area [m]; the contact radius of a round contact."""
         area = self.axes[0] * self.axes[1]
         if self.contour.any():
-            area *= float(np.mean(self.reach(2 * np.pi * np.arange(ANGLES) / ANGLES) ** 2))
+            area *= float(
+                np.mean(self.reach(2 * np.pi * np.arange(2 * numbers.AROUND) / (2 * numbers.AROUND)) ** 2)
+            )
         return float(np.sqrt(2 * area if self.twin else area))
 
     def reach(self, angle: Array) -> Array:
@@ -117,7 +114,9 @@ class Shape:
         high = np.abs(self.harmonics) > 2
         t = t + 2 * np.tensordot(np.where(high, 0.0, self.contour), H, 1)
         # far away the higher harmonics would make t positive again
-        t = np.where(t > FAR, t + 2 * np.tensordot(np.where(high, self.contour, 0.0), H, 1), t)
+        t = np.where(
+            t > numbers.FAR_OUTSIDE, t + 2 * np.tensordot(np.where(high, self.contour, 0.0), H, 1), t
+        )
         return t, s2, H
 
     def inside(self, x: Array, y: Array) -> Array:
@@ -135,7 +134,16 @@ class Shape:
             power[abs(n) // fold] += c if n >= 0 else -1j * c
         low, w = 2 // fold + 1, (u + 1j * v) ** fold
         t = t + 2 * np.polynomial.polynomial.polyval(w, power[:low]).real
-        return np.where(t > FAR, t + 2 * (w**low * np.polynomial.polynomial.polyval(w, power[low:])).real, t)
+        return np.where(
+            t > numbers.FAR_OUTSIDE,
+            t + 2 * (w**low * np.polynomial.polynomial.polyval(w, power[low:])).real,
+            t,
+        )
+
+    def share(self, x: ArrayLike, y: ArrayLike) -> Array:
+        """Share of the way from the centre to the edge at x, y [m]; exact on a circle."""
+        t, s2, _ = self.polynomials(x, y)
+        return np.asarray(1 - t / (1 + np.sqrt(s2)))
 
     def polynomials(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array, Array]:
         """t, s^2 and H_n, (k,) + points, at x, y [m], broadcast."""
@@ -155,7 +163,7 @@ class Shape:
     def _faded(self, t: Array, f: Array) -> Array:
         if not self.outside:
             return f
-        s = np.clip((FADED[1] - t) / (FADED[1] - FADED[0]), 0, 1)
+        s = np.clip((numbers.FADED_INSIDE[1] - t) / (numbers.FADED_INSIDE[1] - numbers.FADED_INSIDE[0]), 0, 1)
         return f * s**3 * (10 - s * (15 - 6 * s))
 
     def at_distance(self, square: Array) -> Array:
@@ -208,7 +216,7 @@ class Shape:
         by = dict(zip(self.harmonics, x[-k:], strict=True))
         c0, c2 = by.get(0, 0.0), by.get(2, 0.0)
         A, B = (
-            w / float(np.sqrt(1 - 2 * np.clip(c, -WIDEST, WIDEST)))
+            w / float(np.sqrt(1 - 2 * np.clip(c, -numbers.WIDEST, numbers.WIDEST)))
             for w, c in zip(self.axes, (c0 + c2, c0 - c2), strict=True)
         )
         centre = self.centre[0] + A * by.get(1, 0.0), self.centre[1] + B * by.get(-1, 0.0)
@@ -289,7 +297,7 @@ class Step:
 
     change: Array
     scaled: Array
-    share: float = DAMPING
+    share: float = numbers.DAMPING
 
 
 def fitted(
@@ -313,10 +321,15 @@ def fitted(
     each one represents.  patch [m] : the side.  fixed_edge : change the coefficients b alone.
     """
     k, across = len(shape.harmonics), min(shape.axes)
-    columns = shape.columns(x, y, BLUNT * patch / across)[: -k if fixed_edge else None]
+    columns = shape.columns(x, y, numbers.BLUNT * patch / across)[: -k if fixed_edge else None]
     left = pressure - replace(shape, outside=False).pressure(x, y)
     if shape.outside:
-        window = np.clip((FADED[1] - shape.polynomials(x, y)[0]) / (FADED[1] - FADED[0]), 0, 1)
+        window = np.clip(
+            (numbers.FADED_INSIDE[1] - shape.polynomials(x, y)[0])
+            / (numbers.FADED_INSIDE[1] - numbers.FADED_INSIDE[0]),
+            0,
+            1,
+        )
         columns, left = columns * window, left * window
     loaded = (left != 0) | (columns[0] != 0)  # where either pressure acts
     deflected = np.stack([deflection(column)[loaded] for column in columns])
@@ -329,7 +342,7 @@ def fitted(
     change = scaled / size
     if fixed_edge:
         return shape.changed(np.concatenate([change, np.zeros(k)])), Step(change, scaled)
-    share = DAMPING
+    share = numbers.DAMPING
     if before is not None and before.scaled.size == scaled.size:
         difference = scaled - before.scaled
         share = -before.share * float(before.scaled @ difference) / float(difference @ difference)
@@ -346,7 +359,7 @@ def _between_centres(shape: Shape, loaded: NDArray[np.bool_], x: Array, y: Array
     """The shape with its edge outside the centres of loaded patches and inside those of unloaded ones."""
     t = shape.inside(x, y)
     beside = maximum_filter(loaded, 3) & ~loaded
-    slack = 2 * SLACK * patch / min(shape.axes)
+    slack = 2 * numbers.SLACK * patch / min(shape.axes)
     low, high = float(t[loaded].min()), float(t[beside].max(initial=-np.inf))
     change = np.zeros((len(shape.coefficients) + 1) * len(shape.harmonics))
     if low < -slack:

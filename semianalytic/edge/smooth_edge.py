@@ -17,22 +17,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_cdt, maximum_filter
 
+from semianalytic import numbers
 from semianalytic.edge.edge_shape import Shape
 from semianalytic.patches.grid import Grid, Window
 
 Array = NDArray[np.floating]
 Indices = NDArray[np.intp]
 
-FULL = 3  # depth in contact to which patches are integrated by parts: 1 beside an unloaded patch
-# Of a patch a side, odd. 15 left an error of 1e-3 of the pressure next to the edge, which does not fall
-# on finer grids, 25 a fifth of it.
-PARTS = 25
-NEAR = 4  # within which the deflection is that of the parts, beyond it that of their moments
-TOGETHER = 16  # patches whose parts fit the processor's cache
 
 # Places in a patch, in patches from its centre: of the parts, their faces.
-MIDDLES = (np.arange(PARTS) - PARTS // 2) / PARTS
-FACES = np.arange(PARTS + 1) / PARTS - 0.5
+MIDDLES = (np.arange(numbers.PARTS) - numbers.PARTS // 2) / numbers.PARTS
+FACES = np.arange(numbers.PARTS + 1) / numbers.PARTS - 0.5
 NODES = np.linspace(-0.5, 0.5, 5)
 
 
@@ -60,7 +55,7 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     depth = distance_transform_cdt(loaded, metric="chessboard")
     beside = maximum_filter(loaded, 3)
     depth, beside = (field[1:-1, 1:-1][tuple(slice(-m, None) for m in p.shape)] for field in (depth, beside))
-    i, j = np.nonzero(beside & (depth <= FULL))
+    i, j = np.nonzero(beside & (depth <= numbers.PARTED))
     x, y = (grid.x[part] for part in window.slices)
     # smooth across the edge: the polynomial through these points gives f^2 all over the patch
     square = shape.square(x[i][:, None, None] + NODES[:, None] * grid.d, y[j][:, None, None] + NODES * grid.d)
@@ -69,14 +64,17 @@ def edge_patches(shape: Shape, p: Array, grid: Grid, window: Window) -> EdgePatc
     slope = np.hypot(*slopes)
     at_edge = (depth[i, j] >= 1) & (depth[i, j] <= 2)
     missed = np.abs(p[i, j] ** 2 - c)[at_edge] / slope[at_edge].max(initial=np.finfo(float).tiny)
-    parts = np.empty((i.size, PARTS**2))
+    parts = np.empty((i.size, numbers.PARTS**2))
     along_x = np.abs(slopes[0]) >= np.abs(slopes[1])
     for cut, axes in ((along_x, (0, 1, 2)), (~along_x, (0, 2, 1))):  # by the edge, along x, along y
         k = np.flatnonzero(cut)
-        for some in (k[first : first + TOGETHER] for first in range(0, k.size, TOGETHER)):
-            parts.reshape(-1, PARTS, PARTS)[some] = _parts(square[some].transpose(axes)).transpose(axes)
+        together = numbers.CACHE // numbers.PARTS**2
+        for some in (k[first : first + together] for first in range(0, k.size, together)):
+            parts.reshape(-1, numbers.PARTS, numbers.PARTS)[some] = _parts(
+                square[some].transpose(axes)
+            ).transpose(axes)
     centre = np.sqrt(np.maximum(c, 0))
-    return EdgePatches(i, j, centre, parts, depth[i, j] == FULL, float(missed.max(initial=0.0)))
+    return EdgePatches(i, j, centre, parts, depth[i, j] == numbers.PARTED, float(missed.max(initial=0.0)))
 
 
 def _parts(square: Array) -> Array:
@@ -87,8 +85,8 @@ def _parts(square: Array) -> Array:
     """
     c = square[:, 2, 2]
     bend = 2 * (square[:, 4, 2] + square[:, 0, 2] - 2 * c)  # half the second derivative, in patches
-    at_faces = (square.reshape(-1, NODES.size**2) @ _AT_FACES).reshape(-1, FACES.size, PARTS)
-    at_faces -= bend[:, None, None] / (6 * PARTS**2)  # its mean over a part is that of a chord
+    at_faces = (square.reshape(-1, NODES.size**2) @ _AT_FACES).reshape(-1, FACES.size, numbers.PARTS)
+    at_faces -= bend[:, None, None] / (6 * numbers.PARTS**2)  # its mean over a part is that of a chord
     root = np.sqrt(np.maximum(at_faces, 0))
     u, v = root[:, :-1], root[:, 1:]
     total = u + v
@@ -118,7 +116,7 @@ def _terms(x: Array, y: Array) -> Array:
 _AT_FACES = np.kron(_interpolation(FACES), _interpolation(MIDDLES))
 # Means over the parts of a pressure 1 in x, y, x^2/2, x y, y^2/2.
 _FIELDS = _terms(MIDDLES, MIDDLES)[1:] * np.array([1, 1, 0.5, 1, 0.5])[:, None]
-_FIELDS[[2, 4]] += 1 / (24 * PARTS**2)
+_FIELDS[[2, 4]] += 1 / (24 * numbers.PARTS**2)
 
 
 def beyond_centres(
@@ -132,10 +130,10 @@ def beyond_centres(
     nx, ny = p.shape
     fields = _derivatives(p, edge, grid) * own
     moments = np.zeros((nx + 2, ny + 2))
-    u = np.zeros((nx + 2 * NEAR, ny + 2 * NEAR))
+    u = np.zeros((nx + 2 * numbers.NEAR_PARTS, ny + 2 * numbers.NEAR_PARTS))
     for (di, dj), of_parts in _stencil().items():
         moments[1 + di : 1 + di + nx, 1 + dj : 1 + dj + ny] += np.tensordot(_FIELDS @ of_parts, fields, 1)
-    around = [*np.ndindex(2 * NEAR + 1, 2 * NEAR + 1)]
+    around = [*np.ndindex(2 * numbers.NEAR_PARTS + 1, 2 * numbers.NEAR_PARTS + 1)]
     for (di, dj), of_fields in zip(around, near @ _FIELDS.T, strict=True):
         u[di : di + nx, dj : dj + ny] += np.tensordot(of_fields, fields, 1)
     i, j = edge.i, edge.j
@@ -151,7 +149,7 @@ def beyond_centres(
     bend = (fields[2] + fields[4]) / (24 * own)
     missing = float((bend if weight is None else weight * bend).sum())
     missing += float((lost if weight is None else weight[i, j] * lost).sum())
-    return deflection(moments) + _folded(u, NEAR, grid), missing * grid.d**2
+    return deflection(moments) + _folded(u, numbers.NEAR_PARTS, grid), missing * grid.d**2
 
 
 def _own(shape: tuple[int, int], grid: Grid) -> Array:
@@ -184,25 +182,25 @@ def patch_mean(edge: EdgePatches, p: Array, grid: Grid) -> Array:
 @lru_cache
 def _stencil() -> dict[tuple[int, int], Array]:
     """Shares of the parts that 3 x 3 constant patches need for the same moments up to the second."""
-    n = (np.arange(PARTS) - PARTS // 2) / PARTS
+    n = (np.arange(numbers.PARTS) - numbers.PARTS // 2) / numbers.PARTS
     x, y = (v.ravel() for v in np.meshgrid(n, n, indexing="ij"))
-    xx, yy = (v**2 + (1 / PARTS**2 - 1) / 12 for v in (x, y))
+    xx, yy = (v**2 + (1 / numbers.PARTS**2 - 1) / 12 for v in (x, y))
     stencil = {(0, 0): 1 - xx - yy}
     for s in (1, -1):
         stencil |= {(s, 0): (xx + s * x) / 2, (0, s): (yy + s * y) / 2}
         stencil |= {(s, t): s * t * x * y / 4 for t in (1, -1)}
-    return {offset: weight / PARTS**2 for offset, weight in stencil.items()}
+    return {offset: weight / numbers.PARTS**2 for offset, weight in stencil.items()}
 
 
 def near_influence(of_patch: Array, of_part: Array) -> Array:
     """Deflection [m/Pa] at the centres around a patch by its parts, less that of patches of equal moments.
 
-    of_patch : influence coefficients of a patch, at least (NEAR + 2, NEAR + 2).  of_part : those of a part,
-    at least ((NEAR + 1) PARTS, (NEAR + 1) PARTS).  Returns ((2 NEAR + 1)^2, PARTS^2).
+    of_patch : influence coefficients of a patch, at least (N + 2, N + 2) for N = ``NEAR_PARTS``.  of_part :
+    those of a part, at least ((N + 1) PARTS, (N + 1) PARTS).  Returns ((2 N + 1)^2, PARTS^2).
     """
-    o = np.arange(-NEAR, NEAR + 1)
-    m = np.abs(o[:, None] * PARTS - (np.arange(PARTS) - PARTS // 2))
-    table = of_part[m[:, None, :, None], m[None, :, None, :]].reshape(o.size**2, PARTS**2)
+    o = np.arange(-numbers.NEAR_PARTS, numbers.NEAR_PARTS + 1)
+    m = np.abs(o[:, None] * numbers.PARTS - (np.arange(numbers.PARTS) - numbers.PARTS // 2))
+    table = of_part[m[:, None, :, None], m[None, :, None, :]].reshape(o.size**2, numbers.PARTS**2)
     for (a, b), weight in _stencil().items():
         table -= of_patch[np.abs(o - a)[:, None], np.abs(o - b)].reshape(-1, 1) * weight
     return table

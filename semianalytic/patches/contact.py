@@ -23,18 +23,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
+from semianalytic import numbers
+
 Array = NDArray[np.floating]
 Mask = NDArray[np.bool_]
 Operator = Callable[[Array], Array]
-
-# Limits of the active-set strategy.
-RESIDUAL_FALL = 0.5  # on a fixed contact set, at which the set is updated
-ITERATIONS_PER_SET = 3  # after which the set is updated in any case
-PREDICTED_UPDATES = 12  # after these the set follows the signs of p and g in every iteration
-EXTENDED_ITERATIONS = 10  # after these the residual is cut off at the edge, P is symmetric again
-PRECONDITIONED_ITERATIONS = 50  # after these P is dropped: Polonsky and Keer's own iteration
-FADED = 0.1  # share of contact in the mean, below which the extended residual fades
-EXTENSION = 2.0  # patches over which the residual is extended beyond the contact, by default
 
 
 class NotConverged(Exception):
@@ -98,7 +91,7 @@ class Problem:
     scale: float
     tolerance: float
     max_iterations: int
-    extension: float = EXTENSION
+    extension: float = numbers.EXTENSION
     weight: Array | None = None
     mirror: Literal["mirror", "reflect"] = "mirror"
 
@@ -132,11 +125,15 @@ class _ContactSet:
 
     def one(self) -> Array:
         """Unit residual, extended beyond the contact set."""
-        return np.where(self.inside, 1.0, np.minimum(self._share, FADED) / FADED)
+        return np.where(
+            self.inside, 1.0, np.minimum(self._share, numbers.FADED_RESIDUAL) / numbers.FADED_RESIDUAL
+        )
 
     def extended(self, r: Array) -> Array:
         """r, which is 0 outside, in contact; its local mean just outside, 0 far away."""
-        return np.where(self.inside, r, self._problem.mean(r) / np.maximum(self._share, FADED))
+        return np.where(
+            self.inside, r, self._problem.mean(r) / np.maximum(self._share, numbers.FADED_RESIDUAL)
+        )
 
 
 @dataclass(slots=True, eq=False)
@@ -221,13 +218,13 @@ def _choose_preconditioner(state: _State, problem: Problem) -> None:
     """Cut P off at the edge, later drop it; what conjugate directions have been built is discarded."""
     if not state.on_set:
         return
-    if state.iterations == PRECONDITIONED_ITERATIONS:
+    if state.iterations == numbers.PRECONDITIONED_ITERATIONS:
         # where the preconditioner misleads, the iterate is far from the solution: start from the first guess
         state.p = _start(problem)
         _find_gap_of_pressure(state, problem)
         state.contact = _ContactSet(state.p > 0, problem)
-        state.set_updates = PREDICTED_UPDATES
-    elif state.iterations != EXTENDED_ITERATIONS:
+        state.set_updates = numbers.PREDICTED_UPDATES
+    elif state.iterations != numbers.EXTENDED_ITERATIONS:
         return
     _find_P_one(state, problem)
     state.on_set = 0
@@ -235,9 +232,9 @@ def _choose_preconditioner(state: _State, problem: Problem) -> None:
 
 def _precondition(r: Array, extended: Array, state: _State, problem: Problem) -> Array:
     """z = P r on the contact set, of r or of its extension; r itself once P is dropped."""
-    if state.iterations >= PRECONDITIONED_ITERATIONS:
+    if state.iterations >= numbers.PRECONDITIONED_ITERATIONS:
         return r
-    z = problem.precondition(extended if state.iterations < EXTENDED_ITERATIONS else r)
+    z = problem.precondition(extended if state.iterations < numbers.EXTENDED_ITERATIONS else r)
     return z * state.contact.inside
 
 
@@ -315,11 +312,11 @@ def _update_set(state: _State, problem: Problem) -> bool:
     if state.admissible or state.new:
         return False
     inside, leave = state.contact.inside, state.tension  # p < 0 in contact alone
-    if state.set_updates >= PREDICTED_UPDATES:
+    if state.set_updates >= numbers.PREDICTED_UPDATES:
         enter = ~inside & (state.g < -state.deep)
     else:
-        fallen = state.residual <= max(RESIDUAL_FALL * state.first, 0.3 * problem.tolerance)
-        if not fallen and state.on_set < ITERATIONS_PER_SET:
+        fallen = state.residual <= max(numbers.RESIDUAL_FALL * state.first, 0.3 * problem.tolerance)
+        if not fallen and state.on_set < numbers.ITERATIONS_PER_SET:
             return False
         # the set predicted for a vanishing residual: g less its extension outside, p less z inside
         predicted = state.g - state.extended + state.contact.one() * state.shift
@@ -369,5 +366,5 @@ def _contact(state: _State, problem: Problem) -> Contact:
         iterations=state.iterations,
         convolutions=state.convolutions,
         history=tuple(state.history),
-        left=np.inf if state.iterations >= PRECONDITIONED_ITERATIONS else state.left,
+        left=np.inf if state.iterations >= numbers.PRECONDITIONED_ITERATIONS else state.left,
     )

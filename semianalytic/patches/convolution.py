@@ -17,10 +17,10 @@ import ducc0
 import numpy as np
 from numpy.typing import NDArray
 
+from semianalytic import numbers
+
 Array = NDArray[np.floating]
 Operator = Callable[[Array], Array]
-
-SHARED = 3 * 2**17  # points of a transform below which a second thread was measured to give no gain
 
 
 def good_size(n: int) -> int:
@@ -80,7 +80,7 @@ def _even_spectrum(kernel: Array, mx: int, my: int, threads: int) -> Array:
 
 def _worth(threads: int, size: int) -> int:
     """Threads for a transform of this size."""
-    return threads if size >= SHARED else 1
+    return threads if size >= numbers.SHARED else 1
 
 
 def _apply_cosines(

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import RectBivariateSpline
 
+from semianalytic import numbers
 from semianalytic.coefficients import influence
 from semianalytic.edge import smooth_edge
 from semianalytic.edge.edge_shape import Shape
@@ -19,12 +20,6 @@ from semianalytic.patches.prescribed import Prescribed
 from semianalytic.stresses.rings import Disc, RingPressure, rings_of
 
 Array = NDArray[np.floating]
-
-SMOOTH = 0.01  # error of the radius at a smooth edge, over M d^2/a with M polynomials: observed at most 0.005
-# times the misfit, by which a shape fitted near the edge alone may miss the edge: 7 under rounded punches
-MISSED = 10.0
-RIPPLE = 3e-4  # of the peak pressure
-SAMPLED, FAR_INSIDE = 65, 0.6  # patches along a side, and 1 - (r/a)^2, for the misfit inside
 
 
 @dataclass(frozen=True)
@@ -50,7 +45,8 @@ class Level:
 
     Both are None for the patches alone, and under a ``given`` pressure.
 
-    noise : pressure [Pa] that the gap left by the iteration may cause on a patch.
+    noise : pressure [Pa] that the gap left by the iteration may cause on a patch.  unsettled : movement of a
+    smooth edge [m] that further rounds of its correction would make.
     """
 
     grid: Grid
@@ -61,6 +57,7 @@ class Level:
     shape: Shape | None = None
     edge: EdgePatches | None = None
     given: Prescribed | None = None
+    unsettled: float = 0.0
 
     @property
     def radius(self) -> float:
@@ -73,23 +70,39 @@ class Level:
         return float(np.sqrt(loaded / np.pi) * self.grid.d)
 
     @property
-    def staircase(self) -> float:
-        """Error of the radius [m] from the patches at the edge; of the second order at a smooth one.
+    def edge_error(self) -> float:
+        """Error of the radius [m] on this grid: of a smooth edge, what its shape misses and rounds leave.
 
         Of patches alone a quarter of a patch all along the edge, whose length is that of the staircase times
-        pi/4, its mean over all directions (Cauchy-Crofton). A shape fitted near the edge alone is no better
-        where its polynomials miss the pressure there, which they do by the same on every grid: up to
-        ``MISSED`` times its misfit.
+        pi/4, its mean over all directions (Cauchy-Crofton). A smooth edge is not known worse, nor better on a
+        film of few patches where the contact has few.
         """
-        d, shape = self.grid.d, self.shape
-        smooth = 0.0 if shape is None else SMOOTH * len(shape.coefficients) * d * d / min(shape.axes)
-        if shape is not None and not shape.outside:
-            return smooth
-        loaded = self.grid.whole(self.found.pressure) > 0
+        d, loaded = self.grid.d, self.grid.whole(self.found.pressure) > 0
         touching = replace(self.grid, quarter=False).ringed(loaded)
         edges = sum(int(np.count_nonzero(np.diff(touching, axis=axis))) for axis in (0, 1))
         stairs = float(np.pi / 4 * edges * d * 0.25 * d / (2 * np.pi * self.radius))
-        return stairs if self.edge is None else min(stairs, smooth + MISSED * self.edge.misfit * d)
+        if self.shape is None:
+            return stairs
+        patch = d / min(self.shape.axes)
+        thin = self.shape.layer < numbers.LAYER * numbers.NARROW_EDGE * patch
+        few = thin and patch * numbers.FEW_FOR_EDGE > 1
+        return self.unsettled + (stairs if few else min(stairs, self.radius * self.edge_misfit))
+
+    @cached_property
+    def edge_misfit(self) -> float:
+        """Share of the way to a smooth edge by which the pressures of the patches beside it deny its shape.
+
+        There p is as the square root of the distance x: one that is off by dp at x belongs to an edge that is
+        off by 2 x dp/p. The largest of all patches over which the shape was fitted to the edge.
+        """
+        assert self.shape is not None
+        p, f = self.found.pressure, replace(self.shape, outside=False)
+        centres = self.grid.x[:, None], self.grid.x[None, :]
+        patch, away = self.grid.d / min(self.shape.axes), 1 - self.shape.share(*centres)
+        farthest = max(numbers.NARROW_EDGE * patch, numbers.FADED_INSIDE[0] / 2)
+        near = (p > 0) & (away > numbers.CUT * patch) & (away < farthest)
+        off = np.abs(p - f.pressure(*centres))[near] / p[near]
+        return float(np.max(2 * off * away[near], initial=0.0))
 
     @property
     def load_at_edge(self) -> float:
@@ -139,15 +152,13 @@ class Level:
     def misfit(self) -> float:
         """Largest difference of the pressure of the patches from that of the shape [Pa], far from the edge.
 
-        On some patches, the middle one included. 0 where ``rest`` holds it.
+        What the polynomials of the shape leave out, on every grid. 0 where ``rest`` holds it.
         """
         if self.shape is None or self.rest is not None:
             return 0.0
-        step = max(1, self.grid.n // SAMPLED)
-        some = slice((len(self.grid.x) // 2 if not self.grid.quarter else 0) % step, None, step)
-        x, p = self.grid.x[some], self.found.pressure[some, some]
-        deep = self.shape.inside(x[:, None], x[None, :]) > FAR_INSIDE
-        miss = np.abs(p - self.shape.pressure(x[:, None], x[None, :]))[deep]
+        x, y = self.grid.x[:, None], self.grid.x[None, :]
+        deep = self.shape.inside(x, y) > numbers.FAR_INSIDE
+        miss = np.abs(self.found.pressure - self.shape.pressure(x, y))[deep]
         return float(miss.max(initial=0.0))
 
     @property
@@ -197,7 +208,7 @@ class Level:
         # in the patches at the edge, less what the parts carry of the shape
         rest[edge.i, edge.j] += edge.centre - p[edge.i, edge.j]
         rest[self.found.pressure <= 0] = 0.0
-        return rest if np.abs(rest).max() > RIPPLE * self.found.pressure.max() else None
+        return rest if np.abs(rest).max() > numbers.RIPPLE * self.found.pressure.max() else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -317,4 +328,4 @@ def _extension(body: Body, d: float) -> float:
     Measured: a third of it reduces five iterations to four where E1/E2 = 10, h = 3 d.
     """
     stiff = [one.thickness[0] for one in body.pair if one.coatings and one.moduli[0] > one.moduli[1]]
-    return min([contact.EXTENSION, *(max(1.0, 0.3 * h / d) for h in stiff)])
+    return min([numbers.EXTENSION, *(max(1.0, 0.3 * h / d) for h in stiff)])

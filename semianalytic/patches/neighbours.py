@@ -6,17 +6,13 @@ from functools import cached_property, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from semianalytic import numbers
 from semianalytic.inputs import Body, Numerics, undeformed_gap
 from semianalytic.patches import nested
 from semianalytic.patches.contact import NotConverged
 from semianalytic.patches.level import Indenter, Level
 
 Array = NDArray[np.floating]
-
-STEPS = 0.05, 0.1  # of the load, to the neighbouring contacts
-OF_STEP = 0.5  # of what the extrapolation of the steps changes; 0.31 was needed in 120 random problems
-FURTHER = 8  # times as many iterations: these contacts start further away
-LEAST = 2e-7  # relative error of an approach, which two grids may share: half of the largest noise observed
 
 
 @dataclass(frozen=True)
@@ -55,10 +51,10 @@ class Neighbours:
         with the contact, so that its edge cuts them alike and their errors cancel.
         """
         level, body = self.level, self.body
-        numerics = replace(self.numerics, max_iterations=FURTHER * self.numerics.max_iterations)
+        numerics = replace(self.numerics, max_iterations=numbers.FURTHER * self.numerics.max_iterations)
         radius = partial(hertz_radius, self.sphere.radius, approach=None, body=body)
         slopes, found = [], [level, level]
-        for step in STEPS:
+        for step in numbers.STEPS:
             for k, factor in enumerate((1 + step, 1 / (1 + step))):
                 load = level.load * factor
                 size = level.grid.d * radius(load) / radius(level.load)
@@ -68,13 +64,19 @@ class Neighbours:
                 found[k] = nested.solve_on(grid, start, pressed, body, numerics)
             ends = [np.log([one.load, one.found.approach]) for one in found]
             slopes.append(float(np.divide(*(ends[0] - ends[1]))))
-        slope = slopes[0] + (slopes[0] - slopes[1]) * STEPS[0] ** 2 / (STEPS[1] ** 2 - STEPS[0] ** 2)
+        slope = slopes[0] + (slopes[0] - slopes[1]) * numbers.STEPS[0] ** 2 / (
+            numbers.STEPS[1] ** 2 - numbers.STEPS[0] ** 2
+        )
         stiffness = slope * self.load / self.approach
         if self.uncertainty is None:
             return stiffness, None
-        error = OF_STEP * abs(slope - slopes[0]) / slope + abs(self.approach / level.found.approach - 1)
+        error = numbers.OF_STEP * abs(slope - slopes[0]) / slope + abs(
+            self.approach / level.found.approach - 1
+        )
         # those of the approaches, over the smaller of their differences, whose slope has the larger weight
-        error += max(self.uncertainty / self.approach, LEAST) / float(np.log1p(STEPS[0]))
+        error += max(self.uncertainty / self.approach, numbers.SHARED_NOISE) / float(
+            np.log1p(numbers.STEPS[0])
+        )
         return stiffness, stiffness * error
 
 

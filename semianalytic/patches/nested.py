@@ -7,20 +7,15 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from semianalytic import numbers
 from semianalytic.coefficients import influence
 from semianalytic.edge.edge_correction import corrected
-from semianalytic.inputs import COARSEST, Body, Numerics
+from semianalytic.inputs import Body, Numerics
 from semianalytic.patches import convolution
 from semianalytic.patches.grid import Grid, Window, odd, touches_rim, window_around
 from semianalytic.patches.level import Indenter, Level, LevelProblem
 
 Array = NDArray[np.floating]
-
-STRIDE = 2.8  # of grids that only give the start: iterations on the next one are about as many as by halves
-HALVINGS = 6  # of steps to the lowest point between the patches, off by 1e-4 of the height over a patch
-BESIDE = 1e-3  # of the approach, by which patches of twice the side may miss the deflection beside a contact
-# of the patches a side, over those of the grids of a refinement study; of patches alone
-REFINED, HALVED = (2.0, 1.4, 1.0), (4.0, 2.0, 1.0)
 
 
 def levels(
@@ -31,13 +26,13 @@ def levels(
     Each starts from the one before, with the shape of its edge; the first from coarser grids of patches
     alone.
     """
-    ratios: tuple[float, ...] = REFINED if indenter.edge_correction else HALVED
+    ratios: tuple[float, ...] = numbers.REFINED if indenter.edge_correction else numbers.HALVED
     if not estimate_uncertainty:
         ratios = (2.0, 1.0) if indenter.edge_correction else (1.0,)
     sizes = [odd(numerics.patches / ratio) for ratio in ratios[:-1]] + [numerics.patches]
     kept = len(sizes)
-    while sizes[0] > 2 * COARSEST:
-        sizes.insert(0, odd(sizes[0] / STRIDE))
+    while sizes[0] > 2 * numbers.COARSEST:
+        sizes.insert(0, odd(sizes[0] / numbers.STRIDE))
     starter = replace(numerics, tolerance=max(3e-4, numerics.tolerance))
     found: list[Level] = []
     rough = replace(indenter, edge_correction=False, between=None)
@@ -93,7 +88,7 @@ def lowest_point(grid: Grid, gap: Array, indenter: Indenter) -> float:
     if indenter.between is None:
         return lowest
     x, y = (float(grid.x[k]) for k in divmod(int(np.argmin(gap)), gap.shape[1]))
-    for k in range(HALVINGS):
+    for k in range(numbers.HALVINGS):
         step = np.array([0.0, -0.5, 0.5]) * grid.d / 2**k
         beside = [np.clip(centre + step, -grid.half_width, grid.half_width) for centre in (x, y)]
         z = np.broadcast_to(indenter.between(*beside), (3, 3))
@@ -129,7 +124,7 @@ def is_alone(level: Level, gap: Array, window: Window, body: Body, numerics: Num
     kernel = influence.surface_coefficients(n, 2 * grid.d, body, numerics)
     p = _merged(p, grid.n, lambda one, other: (one + other) / 2)
     u = convolution.even_convolution(kernel, quarter=grid.quarter, threads=numerics.threads)(p)
-    return bool(np.min(u + beyond) > (1 + BESIDE) * level.found.approach)
+    return bool(np.min(u + beyond) > (1 + numbers.BESIDE_WINDOW) * level.found.approach)
 
 
 def _merged(field: Array, n: int, joined: Callable[[Array, Array], Array]) -> Array:

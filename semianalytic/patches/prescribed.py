@@ -7,12 +7,10 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from semianalytic import numbers
 from semianalytic.stresses.ring_quadrature import gauss_legendre
 
 Array = NDArray[np.floating]
-
-JUMP = 1e-4  # change of the pressure at one radius, over its largest magnitude, that counts as a jump
-AT = 1e-8  # distance from there, over the radius of the load, within which fields are not told apart from it
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +36,7 @@ class Prescribed:
     def singular_radii(self) -> tuple[float, ...]:
         """The rim [m] where p jumps to 0 there, so that its stress has no value; () where it does not."""
         p = np.abs(self.pressure(self.radius * np.linspace(0.0, 1.0, 101)))
-        return (self.radius,) if p[-1] > JUMP * p.max() else ()
+        return (self.radius,) if p[-1] > numbers.JUMP * p.max() else ()
 
     def refuse_inner_jump(self) -> None:
         """Raise ValueError where p jumps inside the disc: rings are integrated up to its rim.
@@ -54,7 +52,7 @@ class Prescribed:
             middle = (low + high) / 2
             steps = np.abs(np.diff(self.pressure(np.array([low, middle, high]))))
             low, high = (low, middle) if steps[0] >= steps[1] else (middle, high)
-        if steps.max() > JUMP * np.abs(p).max():
+        if steps.max() > numbers.JUMP * np.abs(p).max():
             raise ValueError(
                 f"pressure(r) jumps at r = {high:g} m, inside load_radius = {self.radius:g} m; add the "
                 f"solutions of two loads: one that is continuous there, the rest with load_radius {high:g} m"
@@ -64,7 +62,7 @@ class Prescribed:
         """Whether pressure and stress have no value at points [m], broadcast: at ``singular_radii``."""
         r, z = np.broadcast_arrays(np.hypot(x, y), np.asarray(z, dtype=float))
         away = np.abs(r[..., None] - self.singular_radii)
-        return np.hypot(away, z[..., None]).min(axis=-1, initial=np.inf) <= AT * self.radius
+        return np.hypot(away, z[..., None]).min(axis=-1, initial=np.inf) <= numbers.ROUNDING * self.radius
 
     def of_square(self, square: Array) -> Array:
         """p [Pa] of the square of r [m^2]."""

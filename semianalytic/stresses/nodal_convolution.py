@@ -16,15 +16,10 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, irfft2, next_fast_len, rfft, rfft2
 from scipy.special import erfc
 
+from semianalytic import numbers
+
 Array = NDArray[Any]
 Influence = Callable[[Array, Array], Array]  # of integer offsets (m, n), each (k,) -> (components, k)
-
-PAIRS = 200_000  # points times forces, or offsets, held at a time
-FEW = 32  # sites for which direct summation is faster than Fourier transforms
-COLUMNS = 10  # of sites, for which one transform along x each is faster than one in the plane
-WIDE = 400  # forces a side, from which distant ones are gathered ``GATHERED`` times: on 8 times the spacing
-GATHERED = 3
-SPLIT, BLEND = 18.0, 3.0  # distance, in the wider spacing, from which forces are distant; width of the change
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,12 +86,12 @@ def at_points(
 
     Term by term for a few points; for many on the lattice, then between its sites with ``order`` of them.
     """
-    if x.size > 2 * FEW:
+    if x.size > 2 * numbers.FEW_SITES:
         dx, dy = lattice.dx, lattice.dy
         return between_sites(x, y, lattice, lambda m, n: kernel(m * dx, n * dy), odd_in_y, order=order)
     i, j = np.nonzero(lattice.force)
     X, Y, force = lattice.x0 + i * lattice.dx, lattice.y0 + j * lattice.dy, lattice.force[i, j]
-    step = max(1, PAIRS // max(force.size, 1))
+    step = max(1, 16 * numbers.CACHE // max(force.size, 1))
     parts = []
     for begin in range(0, x.size, step):
         xs, ys = x[begin : begin + step, None], y[begin : begin + step, None]
@@ -124,7 +119,7 @@ def near_and_far(
     dx, dy = near.dx, near.dy
 
     def share(x: Array, y: Array) -> Array:
-        return np.asarray(erfc((np.hypot(x, y) / far.dx - SPLIT) / BLEND) / 2)
+        return np.asarray(erfc((np.hypot(x, y) / far.dx - numbers.SPLIT) / numbers.BLEND) / 2)
 
     def nearby(m: Array, n: Array) -> Array:
         return influence(m, n) * share(m * dx, n * dy)
@@ -133,7 +128,7 @@ def near_and_far(
         rest = 1 - share(x, y)
         return kernel(np.where(rest > 0, x, far.dx), y) * rest  # a force at the point itself has no share
 
-    reach = (SPLIT + 5 * BLEND) * far.dx / dx
+    reach = (numbers.SPLIT + 5 * numbers.BLEND) * far.dx / dx
     found = between_sites(x, y, near, nearby, odd_in_y, order=order, reach=reach)
     return found + at_points(x, y, far, distant, odd_in_y, order=10)
 
@@ -184,7 +179,7 @@ def _at_sites(
     columns, column = np.unique(sites[1], return_inverse=True)
     low, high = sites.min(axis=1), sites.max(axis=1)
     m = np.arange(low[0] - (force.shape[0] - 1), high[0] + 1)
-    if columns.size <= COLUMNS:
+    if columns.size <= numbers.COLUMNS:
         m = m[np.abs(m) <= reach] if np.abs(m).min() <= reach else m[:1]
         n = np.arange(1 + min(np.abs(columns[:, None] - [0, force.shape[1] - 1]).max(), reach))
         table = influence_table(influence, m, n, ())
@@ -216,7 +211,7 @@ def _along_columns(
             components = [c for c in range(len(table)) if (c in odd_in_y) is odd]
             if not folded.any():  # a symmetric pressure has no odd components on its axis
                 continue
-            if at.size <= FEW:
+            if at.size <= numbers.FEW_SITES:
                 for k in here:
                     last, first = min(rows - 1, at[k]), max(0, at[k] - length + 1)
                     near = table[components, at[k] - last : at[k] - first + 1]
@@ -243,7 +238,7 @@ def influence_table(
     if not mine.size or not distinct.size:
         return np.zeros((len(influence(m[:1], n[:1])), m.size, n.size))
     mm, nn = np.meshgrid(m[mine], distinct, indexing="ij")
-    rows = max(1, PAIRS // distinct.size)
+    rows = max(1, 16 * numbers.CACHE // distinct.size)
     blocks = [
         influence(a.ravel(), b.ravel()).reshape(-1, *a.shape)
         for a, b in ((mm[i : i + rows], nn[i : i + rows]) for i in range(0, mine.size, rows))

@@ -5,8 +5,8 @@ The pressure between patch centres is the cubic convolution of Keys (1981) of it
     p(x) = sum_i p_i B(x/d - i) in each direction,   B cubic on |t| < 1 and on 1 < |t| < 2,   q = f p,
 
 so that the field at one depth is a discrete convolution of the nodal forces with the influence of one node.
-More than ``NEAR`` patches away, or deeper than ``SHALLOW``, a node is a point force; nearer it is the field
-of the pressure B B on rings (``subsurface``). B has the moments 1, 0, 0, 0, -3/10; with the fourth
+More than ``NEAR_NODE`` patches away, or deeper than ``SHALLOW``, a node is a point force; nearer it is the
+field of the pressure B B on rings (``subsurface``). B has the moments 1, 0, 0, 0, -3/10; with the fourth
 subtracted as a fourth difference, both meet. Deeper down the forces are first gathered on lattices of spacing
 up to z/12. Between patch centres the field is interpolated.
 
@@ -23,11 +23,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.fft import irfft2, next_fast_len, rfft2
 
+from semianalytic import numbers
 from semianalytic.inputs import Body
 from semianalytic.stresses import subsurface
 from semianalytic.stresses.nodal_convolution import (
-    GATHERED,
-    WIDE,
     Influence,
     Lattice,
     at_points,
@@ -38,14 +37,11 @@ from semianalytic.stresses.nodal_convolution import (
     samples,
 )
 from semianalytic.stresses.rings import Node
-from semianalytic.stresses.subsurface import DEPTHS, PointField, chebyshev, weights
+from semianalytic.stresses.subsurface import PointField, chebyshev, weights
 
 Array = NDArray[Any]
 
-SHALLOW = 3.0  # patches; above this depth a node is not yet a point force: aliases exp(-6 pi) = 7e-9
-COARSE = 12.0  # depth over lattice spacing; interpolation through ten sites then errs by 1e-8 of p_h
-NEAR = 6  # patches; beyond, the sixth moment of B contributes 1e-5 of the pressure
-BLOCK = NEAR + 2  # offsets computed, two more for the fourth difference
+BLOCK = numbers.NEAR_NODE + 2  # offsets computed, two more for the fourth difference
 
 
 def stress(
@@ -116,7 +112,7 @@ class _Field:
         """Influence of a node, of integer offsets, and of a point, at each of the ``depths`` [m] of one
         layer."""
         point = self.point(depths, layer)
-        shallow = depths[depths < SHALLOW * d]
+        shallow = depths[depths < numbers.SHALLOW * d]
         near: list[Array | None] = [None] * depths.size
         if shallow.size:
             near[: shallow.size] = self._blocks(shallow, layer, d)
@@ -126,7 +122,7 @@ class _Field:
         ]
 
     def _blocks(self, depths: Array, layer: int, d: float) -> Array:
-        """Influence of a node at offsets up to ``NEAR``, (depths, components, 2 NEAR + 1, 2 NEAR + 1)."""
+        """Influence of a node at offsets up to ``NEAR_NODE``: (depths, components) + offsets in x and y."""
         m, n = np.meshgrid(np.arange(-BLOCK, BLOCK + 1), np.arange(BLOCK + 1), indexing="ij")
         x, y, z = np.broadcast_arrays(m * d, n * d, depths[:, None, None])
         where = np.full(z.size, layer)
@@ -146,10 +142,10 @@ def _influence(point: PointField, z: float, d: float, near: Array | None, m: Arr
     """Influence of unit force on a node at integer offsets (m, n), (components, k)."""
     if near is None:
         return point(m * d, n * d, z)
-    close = np.maximum(np.abs(m), np.abs(n)) <= NEAR
+    close = np.maximum(np.abs(m), np.abs(n)) <= numbers.NEAR_NODE
     total = np.empty((len(near), m.size))
     total[:, ~close] = point(m[~close] * d, n[~close] * d, z)
-    total[:, close] = near[:, m[close] + NEAR, n[close] + NEAR]
+    total[:, close] = near[:, m[close] + numbers.NEAR_NODE, n[close] + numbers.NEAR_NODE]
     return total
 
 
@@ -173,13 +169,13 @@ def _evaluate(
     lattices = [fine]
     while max(lattices[-1].force.shape) > 24:
         lattices.append(lattices[-1].coarser())
-    shallow = z < SHALLOW * fine.dx
+    shallow = z < numbers.SHALLOW * fine.dx
     out = np.zeros((field.components, z.size))
     for number in np.unique(layer):
         for near in (True, False):
             here = np.flatnonzero((layer == number) & (shallow == near))
             depths, which = np.unique(z[here], return_inverse=True)
-            if near and depths.size > DEPTHS:
+            if near and depths.size > numbers.DEPTHS:
                 depths = chebyshev(depths[0], depths[-1], False)
                 share = weights(depths, z[here])
                 for w, of_depth in zip(share, _fields(depths, int(number), lattices, field), strict=True):
@@ -198,10 +194,10 @@ def _fields(
     fine = lattices[0]
     odd = field.odd_in_y
     for z, (influence, kernel) in zip(depths, field.influences(depths, layer, fine.dx), strict=True):
-        level = int(np.clip(np.log2(max(z / (COARSE * fine.dx), 1)), 0, len(lattices) - 1))
-        lattice, shallow = lattices[level], z < SHALLOW * fine.dx
-        if max(lattice.force.shape) > WIDE:
-            pair = lattice, lattices[level + GATHERED]
+        level = int(np.clip(np.log2(max(z / (numbers.SITES_A_DEPTH * fine.dx), 1)), 0, len(lattices) - 1))
+        lattice, shallow = lattices[level], z < numbers.SHALLOW * fine.dx
+        if max(lattice.force.shape) > numbers.WIDE:
+            pair = lattice, lattices[level + numbers.GATHERED]
             if level:
                 influence = partial(_of_lattice, kernel, lattice.dx)
             yield partial(

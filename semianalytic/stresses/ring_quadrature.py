@@ -7,9 +7,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.floating]
+from semianalytic import numbers
 
-LEAST = 1e-9  # distance from the edge, over the width of the contact, below which a point lies on it
+Array = NDArray[np.floating]
 
 
 def from_gap(delta: Array, width: Array, crossing: NDArray[np.bool_], s: Array) -> tuple[Array, Array]:
@@ -57,7 +57,7 @@ def _graded(touches: list[float], inside: bool, scale: float) -> list[tuple[floa
             a += step
 
     first, last = touches[0], touches[-1]
-    least = max(first, LEAST * last)
+    least = max(first, numbers.ROUNDING * last)
     if inside and first > 0:
         near = 0.75 * first
         plain(0.0, near, 0.75, first)

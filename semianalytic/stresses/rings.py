@@ -25,17 +25,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from semianalytic import numbers
 from semianalytic.edge.edge_shape import Shape
 from semianalytic.stresses.ring_quadrature import from_gap, gauss_legendre, panels
 
 Array = NDArray[np.floating]
-
-AROUND = 128  # angles at which a contour that is no circle is sampled,
-RING = 48  # and a ring around a point
-BISECTIONS, SECANTS = 6, 9  # steps to where a ring crosses the edge: t is within 1e-9 of 0
-FLAT = 1e-9  # relative change of t along a ring that has no nearest place to the edge
-NODE = 64, 32  # points of a ring within a node, on a panel of rings: 2e-6 of the field of unit pressure
-AT_ONCE = 12_000  # points of the pressure held at a time, which fit the processor's cache
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,8 +111,8 @@ def _around(discs: Sequence[Disc], x: Array, y: Array, scale: Array) -> list[Rin
     foot, radius, weight = panels(marks, least, first.radial)
     harmonics = np.zeros((len(discs), 7, foot.size))
     s, w = gauss_legendre(first.angular)
-    for begin in range(0, foot.size, AT_ONCE // first.angular):
-        part = slice(begin, begin + AT_ONCE // first.angular)
+    for begin in range(0, foot.size, numbers.CACHE // first.angular):
+        part = slice(begin, begin + numbers.CACHE // first.angular)
         r, rho = r0[foot[part]], radius[part]
         # the direction -x inwards; kappa = cos of the crossing from there
         product = 2 * r * rho
@@ -169,7 +163,7 @@ class SmoothContour:
         marks = list(zip(self._touching(x, y), inside.tolist(), strict=True))
         foot, radius, weight = panels(marks, scale, self.radial)
         harmonics = np.empty((7, foot.size))
-        step = AT_ONCE // self.angular
+        step = numbers.CACHE // self.angular
         for begin in range(0, foot.size, step):
             part = slice(begin, begin + step)
             harmonics[:, part] = self._harmonics(x[foot[part]], y[foot[part]], radius[part])
@@ -184,24 +178,26 @@ class SmoothContour:
             found: Array = (X - x[of]) ** 2 + (Y - y[of]) ** 2
             return found
 
-        sampled = square(np.arange(x.size)[:, None], 2 * np.pi * np.arange(AROUND) / AROUND)
+        sampled = square(np.arange(x.size)[:, None], 2 * np.pi * np.arange(numbers.AROUND) / numbers.AROUND)
         before, after = np.roll(sampled, 1, axis=1), np.roll(sampled, -1, axis=1)
         extreme = (sampled - before) * (after - sampled) <= 0
         extreme[~extreme.any(axis=1), :1] = True  # the centre of a circle
         point, k = np.nonzero(extreme)
-        angle = 2 * np.pi * k / AROUND
+        angle = 2 * np.pi * k / numbers.AROUND
         for _ in range(4):
             low, here, high = square(point, angle + h * np.array([[-1], [0], [1]]))
             slope, bend = (high - low) / (2 * h), (high - 2 * here + low) / h**2
             flat = np.abs(bend) < 1e-6 * here
             step = np.where(flat, 0.0, -slope / np.where(flat, 1.0, bend))
-            angle = angle + np.clip(step, -np.pi / AROUND, np.pi / AROUND)
+            angle = angle + np.clip(step, -np.pi / numbers.AROUND, np.pi / numbers.AROUND)
         # where two extrema are about to arise, the harmonics change as fast as beside one
         bend = after - 2 * sampled + before
         point_of_arising, k = np.nonzero(bend * np.roll(bend, -1, axis=1) < 0)
         share = bend[point_of_arising, k] / (bend - np.roll(bend, -1, axis=1))[point_of_arising, k]
         distance = np.sqrt(
-            np.concatenate([square(point, angle), square(point_of_arising, 2 * np.pi * (k + share) / AROUND)])
+            np.concatenate(
+                [square(point, angle), square(point_of_arising, 2 * np.pi * (k + share) / numbers.AROUND)]
+            )
         )
         point = np.concatenate([point, point_of_arising])
         order = np.lexsort((distance, point))
@@ -220,7 +216,7 @@ class SmoothContour:
             return self.shape.inside(u, y[ring][shift] + rho[ring][shift] * np.sin(phi))
 
         everywhere = np.arange(rho.size)
-        sampled = t(everywhere, 2 * np.pi * np.arange(RING)[None] / RING)
+        sampled = t(everywhere, 2 * np.pi * np.arange(numbers.RING)[None] / numbers.RING)
         ring, low, high, curvature = _segments(sampled, t)
         t_low, t_high = t(ring, low), t(ring, high)
         kept = t_high > 0
@@ -301,15 +297,15 @@ def _around_node(*places: bytes) -> Rings:
     corner = 2**1.5
     r, towards = np.hypot(x, y), np.arctan2(-y, -x)
     marks = [([max(one - corner, 0.0), one + corner], False) for one in r]
-    foot, radius, weight = panels(marks, scale, NODE[1])
+    foot, radius, weight = panels(marks, scale, numbers.NODE_POINTS[1])
     # half the angle within which a ring crosses the circle around the node
     kappa = (r[foot] ** 2 + radius**2 - corner**2) / np.maximum(2 * r[foot] * radius, 1e-30)
     width = np.arccos(np.clip(kappa, -1, 1))
-    s = (np.arange(NODE[0]) + 0.5) / NODE[0] * 2 - 1
+    s = (np.arange(numbers.NODE_POINTS[0]) + 0.5) / numbers.NODE_POINTS[0] * 2 - 1
     phi = towards[foot][:, None] + width[:, None] * s
     c, s = np.cos(phi), np.sin(phi)
     p = _keys(x[foot][:, None] + radius[:, None] * c) * _keys(y[foot][:, None] + radius[:, None] * s)
-    p *= (2 * width / NODE[0])[:, None]
+    p *= (2 * width / numbers.NODE_POINTS[0])[:, None]
     return Rings(foot, radius, weight, _sums(p, c, s))
 
 
@@ -351,8 +347,12 @@ def _crossing(t: Callable[[Array], Array], t_low: Array, t_high: Array) -> Array
     """
     low, high, before = np.zeros(t_low.size), np.ones(t_low.size), np.zeros(t_low.size)
     share = high
-    for step in range(BISECTIONS + SECANTS):
-        w = (low + high) / 2 if step < BISECTIONS else (low * t_high - high * t_low) / (t_high - t_low)
+    for step in range(sum(numbers.CROSSING)):
+        w = (
+            (low + high) / 2
+            if step < numbers.CROSSING[0]
+            else (low * t_high - high * t_low) / (t_high - t_low)
+        )
         share = 2 / np.pi * np.arcsin(np.sqrt(w))
         found = t(share)
         side = np.sign(found)
@@ -371,19 +371,19 @@ def _segments(
     """
     before, after = np.roll(sampled, 1, axis=1), np.roll(sampled, -1, axis=1)
     lows, highs = (sampled < before) & (sampled <= after), (sampled > before) & (sampled >= after)
-    flat = np.ptp(sampled, axis=1) < FLAT * np.abs(sampled).max(axis=1)
+    flat = np.ptp(sampled, axis=1) < numbers.ROUNDING * np.abs(sampled).max(axis=1)
     flat |= ~lows.any(axis=1) | ~highs.any(axis=1)
     lows[flat], highs[flat] = False, False
-    lows[flat, 0] = highs[flat, RING // 2] = True
+    lows[flat, 0] = highs[flat, numbers.RING // 2] = True
     ring, k = np.nonzero(lows | highs)
-    phi, low = 2 * np.pi * k / RING, lows[ring, k]
+    phi, low = 2 * np.pi * k / numbers.RING, lows[ring, k]
     h = 1e-3
     for _ in range(3):
         minus, here, plus = (t(ring, phi + shift) for shift in (-h, 0.0, h))
         slope, curvature = (plus - minus) / (2 * h), (plus - 2 * here + minus) / h**2
         good = np.where(low, curvature, -curvature) > 1e-12 * np.abs(sampled).max()
         change = np.where(good, -slope / np.where(good, curvature, 1.0), 0.0)
-        phi = phi + np.clip(change, -np.pi / RING, np.pi / RING)
+        phi = phi + np.clip(change, -np.pi / numbers.RING, np.pi / numbers.RING)
     # neighbours along a ring, the last one and the first
     first = np.searchsorted(ring, ring)
     last = np.searchsorted(ring, ring, side="right") - 1

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PPoly
 
+from semianalytic import numbers
 from semianalytic.coefficients.point_force import (
     PointForce,
     combine_displacement,
@@ -37,10 +38,6 @@ from semianalytic.inputs import Body
 from semianalytic.stresses.rings import RingPressure, Rings, rings_around
 
 Array = NDArray[Any]
-
-PAIRS = 4_000  # points times rings held at a time, which fit the processor's cache
-# Chebyshev depths within an octave of the reach: 10 leave 1e-6 of p0; fewer depths are taken as they are
-DEPTHS = 14
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +147,7 @@ def _at_depths(rings: Rings, foot: NDArray[np.intp], z: Array, field: "PointFiel
     start = 0
     while start < z.size:
         held = ends[start - 1] if start else 0
-        stop = max(start + 1, int(np.searchsorted(ends, held + PAIRS, side="right")))
+        stop = max(start + 1, int(np.searchsorted(ends, held + numbers.CACHE // 3, side="right")))
         some = slice(start, stop)
         which = np.repeat(np.arange(stop - start), count[some])
         ring = np.arange(which.size) + np.repeat(
@@ -195,7 +192,7 @@ class PointField:
         for power in dict.fromkeys(octave):
             here = octave == power
             depths = np.unique(z[here])
-            if between := depths.size > DEPTHS:
+            if between := depths.size > numbers.DEPTHS:
                 nodes = chebyshev(reach[here].min(), reach[here].max(), True)
                 depths = np.abs(image - nodes)
             tables = response.below(depths, layer, least * 2.0**power, excess=layer == 0)
@@ -240,7 +237,7 @@ class PointField:
 
 def chebyshev(low: float, high: float, in_logarithm: bool) -> Array:
     """Depths at the Chebyshev nodes of [low, high], ends included, or of its logarithm."""
-    t = (1 - np.cos(np.pi * np.arange(DEPTHS) / (DEPTHS - 1))) / 2
+    t = (1 - np.cos(np.pi * np.arange(numbers.DEPTHS) / (numbers.DEPTHS - 1))) / 2
     return low * (high / low) ** t if in_logarithm else low + (high - low) * t
 
 

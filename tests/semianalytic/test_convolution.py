@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from semianalytic import numbers
 from semianalytic.patches import convolution
 
 RNG = np.random.default_rng(7)
@@ -61,7 +62,7 @@ def test_a_later_call_leaves_what_an_earlier_one_returned():
 
 def test_a_second_thread_changes_no_more_than_rounding():
     n = 320  # so that the transforms are large enough to be shared between threads
-    assert convolution.good_size(2 * n - 1) ** 2 > convolution.SHARED
+    assert convolution.good_size(2 * n - 1) ** 2 > numbers.SHARED
     kernel, p = RNG.normal(size=(2, n, n))
     for build in (convolution.even_convolution, convolution.circulant_inverse):
         one, two = build(kernel, threads=1)(p), build(kernel, threads=2)(p)

@@ -31,4 +31,4 @@ def test_staircase_of_a_disc_is_a_quarter_of_a_patch_of_its_radius(quarter):
     disc = Contact.of_load(np.where(grid.radius < 1, 1.0, 0.0))
     found = Level(grid, disc, np.pi, 0)
     assert found.radius == pytest.approx(1, rel=1e-3)
-    assert found.staircase == pytest.approx(grid.d / 4, rel=1e-2)
+    assert found.edge_error == pytest.approx(grid.d / 4, rel=1e-2)

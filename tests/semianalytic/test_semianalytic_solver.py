@@ -181,7 +181,7 @@ def test_uncertainty_brackets_the_error_and_not_by_orders():
         assert error <= getattr(u, name) <= 100 * error
         total = sum(v for quantity, _, v in u.budget if quantity == name)
         assert getattr(u, name) == pytest.approx(total, rel=1e-14, abs=0)
-    parameters = {"patch size", "conversion", "domain", "iteration"}
+    parameters = {"patch size", "edge", "conversion", "domain", "iteration"}
     assert {parameter for _, parameter, _ in u.budget} == parameters
     x = s.surface_nodes
     error = np.abs(s.pressure(x) - P_H * np.sqrt(np.maximum(1 - (x / A_H) ** 2, 0)))
@@ -286,7 +286,7 @@ def test_patches_are_refined_to_the_accuracy_or_as_far_as_allowed(monkeypatch):
         error = abs(getattr(rough, name) - getattr(fine, name))
         assert error <= getattr(rough.uncertainty, name) + getattr(fine.uncertainty, name)
     for limit in ("LARGEST_GRID", "LARGE_GRID"):
-        monkeypatch.setattr(f"semianalytic.solver.{limit}", 100)
+        monkeypatch.setattr(f"semianalytic.numbers.{limit}", 100)
     stopped = solve(STIFF, **given, accuracy=1e-9)
     assert stopped.diagnostics.patches_per_side <= 100
     assert reached(stopped) > 1e-9

@@ -1,6 +1,7 @@
 """What a chosen number of a method trades: errors and time of random problems with other values of it."""
 
 import time
+from collections.abc import Iterator
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -9,14 +10,18 @@ import numpy as np
 from drawn_problems import draw
 from faults_planted.fault_anchor import Change
 from faults_planted.fault_planting import owner_of, planted
+from numpy.typing import NDArray
 
 from verification.cases.case_file import parse_case
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.shared_options import Flag
 from verification.commands.common.terminal import named_table, print_out, with_exit_code
-from verification.running.case_result import CaseResult
+from verification.running.case_result import CaseResult, Profile
 from verification.running.contact_run import judge_case, solve_case
 from verification.sources.source_registry import EXACT, METHODS, solvers
+
+LEAST = 1e-9  # of the largest reference value of a profile: smaller errors are rounding
+Array = NDArray[np.floating]
 
 
 @with_exit_code
@@ -39,7 +44,7 @@ def trade(target: str, *values: str, count: int = 4, seed: int = 5, films: Flag 
     for value in dict.fromkeys((present, *values)):
         begin = time.process_time()
         with nullcontext() if value == present else planted((Change(target, by=value),)):
-            results = [_solved(draw(seed, number, films).text, source) for number in range(count)]
+            results = [solved(draw(seed, number, films).text, source) for number in range(count)]
         seconds = time.process_time() - begin
         scalars, fields, ratios = np.max([_errors(result, source) for result in results], axis=0)
         table.add_row(value, f"{seconds:.0f}", f"{scalars:.1e}", f"{fields:.1e}", f"{ratios:.2f}")
@@ -47,23 +52,32 @@ def trade(target: str, *values: str, count: int = 4, seed: int = 5, films: Flag 
     return 0
 
 
-def _solved(text: str, source: str) -> CaseResult:
+def solved(text: str, source: str) -> CaseResult:
+    """A problem by one method and the exact reference, sampled along all its lines."""
     case = parse_case(text.encode(), Path("drawn.toml"))
     pair = {source, EXACT[0]}
     case = replace(case, claims=tuple(claim for claim in case.claims if set(claim.between) == pair))
     return judge_case(case, solve_case(case, {name: solvers()[name] for name in pair}), invariants=False)
 
 
-def _errors(result: CaseResult, source: str) -> tuple[float, float, float]:
-    """Largest error of a scalar and of a field over its largest value, and over the uncertainty of both."""
+def compared(result: CaseResult, source: str) -> Iterator[tuple[Profile, Array, Array]]:
+    """Each profile of a method, its error against the exact reference, 0 where it is rounding, and the
+    uncertainty of both."""
     profiles = {(p.quantity, p.line, p.source): p for p in result.profiles}
-    scalars, fields, ratios = [0.0], [0.0], [0.0]
     for (quantity, line, name), mine in profiles.items():
         exact = profiles.get((quantity, line, EXACT[0]))
         if name != source or exact is None or mine.uncertainty is None or exact.uncertainty is None:
             continue
-        error, largest = np.abs(mine.value - exact.value), np.abs(exact.value).max(initial=1e-300)
-        (scalars if line == "contact" else fields).append(float(error.max() / largest))
-        counted = error > 1e-9 * largest
-        ratios.append(float((error / (mine.uncertainty + exact.uncertainty))[counted].max(initial=0.0)))
+        error, U = np.abs(mine.value - exact.value), mine.uncertainty + exact.uncertainty
+        rounding = LEAST * np.abs(exact.value).max(initial=0.0)
+        yield mine, np.where(error > rounding, error, 0.0), np.maximum(U, np.finfo(float).tiny)
+
+
+def _errors(result: CaseResult, source: str) -> tuple[float, float, float]:
+    """Largest error of a scalar and of a field over its largest value, and over the uncertainty of both."""
+    scalars, fields, ratios = [0.0], [0.0], [0.0]
+    for mine, error, U in compared(result, source):
+        largest = np.abs(mine.value).max(initial=1e-300)
+        (scalars if mine.line == "contact" else fields).append(float(error.max() / largest))
+        ratios.append(float((error / U).max(initial=0.0)))
     return max(scalars), max(fields), max(ratios)

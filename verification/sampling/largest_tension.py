@@ -91,9 +91,12 @@ class Search:
             best = Tension(highest, place, wide, self.solution.sample(None, "contact_radius").uncertainty)
         if best.uncertainty is None or best.place_uncertainty is None:
             return best
-        # Any other candidate that is as large within the uncertainty may be the place.
+        # Any other candidate as large within the uncertainty may be the place, which moves with the edge.
         reach = [abs(x - best.place) for v, x in others if v >= best.value - 2 * best.uncertainty]
-        return Tension(best.value, best.place, best.uncertainty, max([best.place_uncertainty, *reach]))
+        edge = self.solution.sample(None, "contact_radius").uncertainty or 0.0
+        moved = 0.0 if best.place == place else edge
+        wide = max([best.place_uncertainty + moved, *reach])
+        return Tension(best.value, best.place, best.uncertainty, wide)
 
     @property
     def _sides(self) -> tuple[float, ...]:

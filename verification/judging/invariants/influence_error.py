@@ -32,15 +32,15 @@ def influence_coefficients(solution: Solution, source: str, problem: CoatedConta
     ``surface_coefficients`` is called as the solution calls it: on its grid, for both bodies. The quadrature
     is that of the response of the layers in the references, around the edge of each patch.
     """
+    from semianalytic import numbers
     from semianalytic.coefficients import influence
-    from semianalytic.edge import smooth_edge
     from semianalytic.inputs import Numerics
 
-    body, stated, parts = _body(problem), solution.diagnostics, smooth_edge.PARTS
+    body, stated, parts = _body(problem), solution.diagnostics, numbers.PARTS
     n = getattr(stated, "patches_per_side", PATCHES)
     d = getattr(stated, "patch_size", None) or 2.24 * solution.contact_radius / n
     errors = []
-    for size, side in ((n, d), ((smooth_edge.NEAR + 1) * parts, d / parts)):
+    for size, side in ((n, d), ((numbers.NEAR_PARTS + 1) * parts, d / parts)):
         K = influence.surface_coefficients(size, side, body, Numerics())
         places = _places(size)
         exact = _by_quadrature(problem, places, side)
