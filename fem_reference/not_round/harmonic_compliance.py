@@ -60,6 +60,11 @@ class HarmonicCompliance:
         """Radii of the unknowns below the pressure."""
         return self.discretisation.locations[0, self.loaded]
 
+    @property
+    def vertices(self) -> np.ndarray:
+        """Radii of the vertices among them."""
+        return self.nodes[:: self.discretisation.order]
+
     @cached_property
     def harmonics(self) -> np.ndarray:
         """m of the pressure."""

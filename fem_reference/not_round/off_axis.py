@@ -87,10 +87,11 @@ def discretised(
     order: int,
     growth: float = 1.5,
     edges: tuple[float, ...] = (),
+    stacks: tuple[tuple[float, ...], ...] = (),
 ) -> Discretisation:
     """Elements of a mesh whose surface is divided evenly below the radius 1, but around ``edges``.
 
-    growth : of the size towards the outer boundary
+    growth : of the size towards the outer boundary.   stacks : see ``meridian_mesh``
     """
     grading = Grading(
         size,
@@ -103,7 +104,9 @@ def discretised(
         surface=surface,
         edges=edges,
     )
-    mesh = meridian_mesh(contact_radius=1.0, thicknesses=solid.thicknesses, far=solid.far, grading=grading)
+    mesh = meridian_mesh(
+        contact_radius=1.0, thicknesses=solid.thicknesses, far=solid.far, grading=grading, stacks=stacks
+    )
     return Discretisation(mesh, order)
 
 

@@ -25,7 +25,8 @@ class CoatedContact:
     coatings : ((E [Pa], nu, thickness [m]), ...) from the surface down; () is the uncoated solid.
     substrate : (E [Pa], nu).   friction : f in q = f p, traction on the flat in +x and on the ball in -x.
     ball : None is rigid; (E, nu, coatings) of an elastic ball, its coatings from its surface inwards.
-    indenter : None is the sphere; another rigid shape with its numbers, see ``indenter_shape``.
+    indenter : None is the sphere; another shape with its numbers, see ``indenter_shape``, of which a ball is
+    the solid.
 
     Near the contact both bodies are layered half-spaces, with the gap r^2/2R before they deform. The scales
     a_h, p_h, delta_h are those of both bodies without coatings.
@@ -43,8 +44,6 @@ class CoatedContact:
     def __post_init__(self) -> None:
         if self.indenter is not None:
             require_shape(self.indenter)
-            if self.ball is not None:
-                raise ValueError("an elastic ball and an indenter are both given; give one")
             shape, numbers = self.indenter
             if shape == "ellipsoid" and not isclose(self.radius**2, numbers[0] * numbers[1], rel_tol=1e-9):
                 mean = (numbers[0] * numbers[1]) ** 0.5

@@ -105,7 +105,7 @@ def lines_of(problem: CoatedContact) -> tuple[Line, ...]:
     for body in problem.bodies:
         before = ON_BALL if body == BALL else ""
         names += [f"{before}surface", f"{before}axis"]
-        names += [EDGE_LINE] if problem.indenter is not None else []
+        names += [f"{before}{EDGE_LINE}"] if problem.indenter is not None else []
         for k in range(1, len(problem.seen_from(body).coatings) + 1):
             names += [f"{before}interface {k}, upper side", f"{before}interface {k}, lower side"]
     return tuple(line_of(name, problem) for name in names)

@@ -29,10 +29,10 @@ def hertz(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> 
     from verification.sources.references.hertz import Hertz
     from verification.sources.references.hertz_ellipse import pressed_ellipsoid
 
+    ball = None if problem.ball is None else problem.ball[:2]
     if problem.indenter is not None:
         along, across = problem.indenter[1]
-        return pressed_ellipsoid(along, across, problem.load, *problem.substrate)
-    ball = None if problem.ball is None else problem.ball[:2]
+        return pressed_ellipsoid(along, across, problem.load, *problem.substrate, ball)
     return Hertz(problem.radius, problem.load, *problem.substrate, problem.friction, ball=ball)
 
 

@@ -83,13 +83,18 @@ class HertzEllipse(ByFunctions):
         return self.p0 * np.sqrt(np.maximum(inside, 0.0))
 
 
-def pressed_ellipsoid(R_x: float, R_y: float, load: float, E: float, nu: float) -> HertzEllipse:
-    """Contact of a rigid ellipsoid with radii of curvature R_x, R_y [m] under ``load`` [N] on one solid.
+def pressed_ellipsoid(
+    R_x: float, R_y: float, load: float, E: float, nu: float, ball: tuple[float, float] | None = None
+) -> HertzEllipse:
+    """Contact of an ellipsoid with radii of curvature R_x, R_y [m] under ``load`` [N] on one solid.
+
+    ball : (E, nu) of the ellipsoid, None where it is rigid.
 
     The ratio of the axes is that whose curvatures have the given ratio; then p0 and a follow from the load
     and one curvature.
     """
-    E_star, (long, short) = E / (1 - nu**2), (max(R_x, R_y), min(R_x, R_y))
+    E_star = 1 / sum((1 - nu_k**2) / E_k for E_k, nu_k in ((E, nu), *((ball,) if ball else ())))
+    long, short = max(R_x, R_y), min(R_x, R_y)
     if long == short:
         a = (0.75 * load * long / E_star) ** (1 / 3)
         return HertzEllipse(a, a, 1.5 * load / (pi * a**2), E_star)
