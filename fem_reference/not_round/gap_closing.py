@@ -50,6 +50,10 @@ class Closed:
         one = self.compliances[0]
         return one.nodal_loads(at.r, at.theta, forces.reshape(1, *at.theta.shape), one.last)[..., 0]
 
+    def of_degree(self, degree: int, height: Height, load: float, last: int) -> "Closed":
+        """The contact by a pressure of another degree; arguments as of ``closed``."""
+        return closed(self.compliances, self.pressure.of_degree(degree), height, load, last)
+
     def residual(self, height: Height) -> float:
         """Root mean square of the gap left inside, weighted with the pressure, over the approach."""
         at, forces = self._forces

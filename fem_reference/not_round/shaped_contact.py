@@ -40,6 +40,7 @@ RESOLVED = 1 / 8  # of an element's width
 COARSER = 1.3  # triangles of the companion over those of the mesh
 CORRECTING = 96  # of the harmonics, that correct the pressure
 DEGREE, ROUGH_DEGREE = 8, 4  # of the polynomial in the pressure
+SLOWEST = 0.75  # ratio of the changes of the pressure by two degrees more that is taken
 ROUNDS = 12  # of rough meshes, each wider where the contact leaves it
 ENOUGH_ROUGH = 1e-4  # change of the rough edge in the last step
 TYPICAL = 97  # per cent of points below the contact whose stress changes less from the companion
@@ -58,6 +59,27 @@ class ShapedGrid:
 
 
 ROUGH = ShapedGrid(0.6, 0.16, 36, 1.3, DENSITY / 2)
+
+
+@dataclass(frozen=True, eq=False)
+class Truncation:
+    """What the terms of a pressure beyond its degree may add, if they fall geometrically.
+
+    share : of the change from the pressure ``lower``, of two degrees less.   largest : inside
+    """
+
+    lower: StarPressure
+    share: float
+    largest: float
+
+    @classmethod
+    def of(cls, pressure: StarPressure, lower: StarPressure, lowest: StarPressure) -> "Truncation":
+        """From pressures of degrees that fall by two: ratio/(1 - ratio) of the last change."""
+        w, tau = np.meshgrid(np.linspace(0.0, 0.9, 10), np.linspace(0, np.pi, 13))
+        p, second, third = (one(*one.points(w, tau)) for one in (pressure, lower, lowest))
+        ratio = min(float(np.linalg.norm(p - second) / np.linalg.norm(second - third)), SLOWEST)
+        share = ratio / (1 - ratio)
+        return cls(lower, share, share * float(np.abs(p - second).max()))
 
 
 @dataclass(frozen=True)
@@ -84,6 +106,7 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
+    truncated : what terms of the pressure beyond its degree may add
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
@@ -98,10 +121,9 @@ class ShapedContact(PressedSolid):
     uncertainty: Uncertainty | None
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
+    truncated: "Truncation | None" = field(default=None, repr=False)
     typical: float = 0.0
-    opposite: "ShapedContact | None" = field(
-        default=None, repr=False
-    )  # the same contact with the ball's fields
+    opposite: "ShapedContact | None" = field(default=None, repr=False)
     frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
 
     def sample(self, points: Any, quantity: str, uncertainty: bool = True) -> ElementAnswer:
@@ -131,6 +153,8 @@ class ShapedContact(PressedSolid):
         distance = np.hypot(x, y) / (AXIS[1] * self._units.length)
         safety = SAFETY * (1 + (AXIS[0] - 1) * np.maximum(1 - distance, 0))
         floor = self._errors[2] + smeared
+        if self.truncated is not None:
+            floor = floor + self.truncated.largest * self._units.pressure
         return ElementAnswer(value, np.maximum(safety * U, SAFETY * self.typical) + floor)
 
     @property
@@ -171,20 +195,25 @@ class ShapedContact(PressedSolid):
     def _pressure(self, points: Any, stated: bool) -> ElementAnswer:
         """Pressure [Pa], uncertain by the change from the companion and that of the peak."""
         p = self._given(points)
-        if not stated or self._coarse is None:
+        if not stated or self._coarse is None or self.truncated is None:
             return ElementAnswer(p)
-        at = (v / self._units.length for v in self._matching(points))
-        other = np.asarray(self._coarse.pressure(*at)) * self._units.pressure
-        return ElementAnswer(p, SAFETY * np.abs(p - other) + self._errors[2])
+        other, lower = (self._other(points, one) for one in (self._coarse.pressure, self.truncated.lower))
+        cut = self.truncated.share * np.abs(other - lower)
+        return ElementAnswer(p, SAFETY * np.abs(p - other) + cut + self._errors[2])
 
-    def _matching(self, points: Any) -> tuple[Any, Any]:
+    def _other(self, points: Any, pressure: StarPressure) -> np.ndarray:
+        """Another pressure [Pa] at the points that are compared."""
+        x, y = (v / self._units.length for v in self._matching(points, pressure))
+        return np.asarray(pressure(x, y) * self._units.pressure)
+
+    def _matching(self, points: Any, other: StarPressure) -> tuple[Any, Any]:
+        """Points [m] of the ``other`` pressure that are compared with x, y."""
         x, y = np.broadcast_arrays(np.asarray(points.x, dtype=float), np.asarray(points.y, dtype=float))
         at_edge = np.asarray(points.frame) == "edge"
         if not at_edge.any():
             return x, y
-        pair, L = [one.pressure for one in (self._fine, self._coarse) if one], self._units.length
-        fine, other = (one for one in pair if isinstance(one, StarPressure))
-        X, Y = fine.matching(other, x / L, y / L)
+        L = self._units.length
+        X, Y = self._fine.pressure.matching(other, x / L, y / L)
         return np.where(at_edge, L * X, x), np.where(at_edge, L * Y, y)
 
 
@@ -245,14 +274,10 @@ def solve_shape(
     def on_mesh(reach: float, grid: ShapedGrid, begin: StarPressure, enough: float = ENOUGH) -> Closed:
         """The contact [reach] on a mesh to the radius ``reach`` [m]."""
         start = begin.scaled(reach)
-        edges = (
-            [] if grid.harmonics <= ROUGH.harmonics else [abs(x) for x in start.edges] + [start.extents[1]]
-        )
-        radii = sorted({round(x, 4) for x in edges})
-        # vertices at the radii at which the pressure has a root, none right beside another
-        apart = tuple(
-            r for r, before in zip(radii, [0.0, *radii], strict=False) if r - before > grid.surface / 10
-        )
+        # vertices at the radii of the edge on y = 0 and of its sides, none right beside another
+        radii = sorted({round(abs(x), 4) for x in (*start.edges, start.extents[1])})
+        pairs = zip(radii, [0.0, *radii], strict=False) if grid is not ROUGH else ()
+        apart = tuple(r for r, before in pairs if r - before > grid.surface / 10)
         bodies = solids(reach)
         stacks = tuple(one.thicknesses for one in bodies)
         inner = max(0.0, start.reach[0] - (grid.margin - 1))
@@ -267,14 +292,10 @@ def solve_shape(
             )
             for one in bodies
         )
-        return closed(
-            compliances,
-            start,
-            shape.scaled(reach),
-            load / (E * reach**2),
-            min(CORRECTING, grid.harmonics),
-            enough,
-        )
+        return closed(compliances, start, *arguments(reach, grid), enough)
+
+    def arguments(reach: float, grid: ShapedGrid) -> tuple[Height, float, int]:
+        return shape.scaled(reach), load / (E * reach**2), min(CORRECTING, grid.harmonics)
 
     for _ in range(ROUNDS):
         reach = ROUGH.margin * begin.reach[1]
@@ -299,22 +320,25 @@ def solve_shape(
     sliding = (friction, -friction)
     fine = [_fields(found, k, sliding[k], surface) for k in range(len(layers))]
     coarse: list[OffAxisFields | None] = [None] * len(layers)
-    uncertainty, extents = None, None
+    uncertainty, extents, truncated = None, None, None
     if estimate_uncertainty:
         coarser = ShapedGrid(COARSER * size, COARSER * surface, harmonics, MARGIN, DENSITY / COARSER)
         start = found.pressure.scaled(1 / reach)
-        companion = on_mesh(reach, coarser, start.of_degree(degree - 2))
+        companion = on_mesh(reach, coarser, start)
+        low = [companion.of_degree(degree - k, *arguments(reach, coarser)) for k in (2, 4)]
+        truncated = Truncation.of(companion.pressure, *(one.pressure for one in low))
         coarse = [_fields(companion, k, sliding[k], COARSER * surface) for k in range(len(layers))]
         change = SAFETY * np.abs(numbers - _numbers(companion))
         change[1] = max(change[1], STIFF * (size / QUALITIES["default"][0]) ** 4 * numbers[1])
+        cut = truncated.share * np.abs(_numbers(companion) - _numbers(low[0]))
         left = np.maximum(residual, SAFETY * found.errors) * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
-        parts = (("element size and degree", change), ("gap left", left))
+        parts = (("element size", change), ("degree of the pressure", cut), ("gap left", left))
         budget = tuple(
             (name, what, float(part[k] * units[k])) for k, name in enumerate(names) for what, part in parts
         )
-        total = (change + left) * units
+        total = np.sqrt(sum(part**2 for _, part in parts)) * units
         uncertainty = Uncertainty(float(total[0]), float(total[1]), float(total[2]), budget)
         extents = float(total[3]), float(total[4])
     d = fine[0].discretisation
@@ -344,6 +368,7 @@ def solve_shape(
                 uncertainty=uncertainty,
                 extent_uncertainty=extents,
                 height=shape.height,
+                truncated=truncated,
                 typical=_typical(PressedSolid(*pair, unit)) if estimate_uncertainty else 0.0,
                 opposite=sides[0] if sides else None,
             )
@@ -352,8 +377,7 @@ def solve_shape(
 
 
 def _fields(found: Closed, body: int, friction: float, surface: float) -> OffAxisFields:
-    p = found.pressure
-    return OffAxisFields.of(found.compliances[body], found.nodal_loads, friction, p, p.edges, surface)
+    return OffAxisFields.of(found.compliances[body], found.nodal_loads, friction, found.pressure, surface)
 
 
 def _typical(solid: PressedSolid) -> float:
