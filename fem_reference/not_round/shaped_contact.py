@@ -29,7 +29,7 @@ from fem_reference.validation import (
 )
 
 MARGIN = 1.04  # of the contact up to the last node below the pressure, and as much before the first
-QUALITIES = {"fast": (0.5, 0.12, 120), "default": (0.44, 0.07, 240), "fine": (0.4, 0.05, 288)}
+QUALITIES = {"fast": (0.5, 0.12, 120), "default": (0.44, 0.06, 240), "fine": (0.4, 0.05, 288)}
 # Times the number of waves as wide as the contact at its end on y = 0, as deep inside as the triangles there.
 AT_END = 5.0
 STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish
@@ -39,8 +39,8 @@ AXIS = 2.25, 0.15
 RESOLVED = 1 / 8  # of an element's width
 COARSER = 1.3  # triangles of the companion over those of the mesh
 CORRECTING = 96  # of the harmonics, that correct the pressure
-DEGREE, ROUGH_DEGREE = 8, 4  # of the polynomial in the pressure
-SLOWEST = 0.75  # ratio of the changes of the pressure by two degrees more that is taken
+DEGREE = 4  # of the polynomial in the pressure, over the number of waves around, which counts as 2 at least
+ROUGH_DEGREE = 4
 ROUNDS = 12  # of rough meshes, each wider where the contact leaves it
 ENOUGH_ROUGH = 1e-4  # change of the rough edge in the last step
 TYPICAL = 97  # per cent of points below the contact whose stress changes less from the companion
@@ -59,27 +59,6 @@ class ShapedGrid:
 
 
 ROUGH = ShapedGrid(0.6, 0.16, 36, 1.3, DENSITY / 2)
-
-
-@dataclass(frozen=True, eq=False)
-class Truncation:
-    """What the terms of a pressure beyond its degree may add, if they fall geometrically.
-
-    share : of the change from the pressure ``lower``, of two degrees less.   largest : inside
-    """
-
-    lower: StarPressure
-    share: float
-    largest: float
-
-    @classmethod
-    def of(cls, pressure: StarPressure, lower: StarPressure, lowest: StarPressure) -> "Truncation":
-        """From pressures of degrees that fall by two: ratio/(1 - ratio) of the last change."""
-        w, tau = np.meshgrid(np.linspace(0.0, 0.9, 10), np.linspace(0, np.pi, 13))
-        p, second, third = (one(*one.points(w, tau)) for one in (pressure, lower, lowest))
-        ratio = min(float(np.linalg.norm(p - second) / np.linalg.norm(second - third)), SLOWEST)
-        share = ratio / (1 - ratio)
-        return cls(lower, share, share * float(np.abs(p - second).max()))
 
 
 @dataclass(frozen=True)
@@ -106,7 +85,7 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
-    truncated : what terms of the pressure beyond its degree may add
+    further : pressure of a higher degree on the companion's mesh
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
@@ -121,7 +100,7 @@ class ShapedContact(PressedSolid):
     uncertainty: Uncertainty | None
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
-    truncated: "Truncation | None" = field(default=None, repr=False)
+    further: StarPressure | None = field(default=None, repr=False)
     typical: float = 0.0
     opposite: "ShapedContact | None" = field(default=None, repr=False)
     frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
@@ -153,8 +132,6 @@ class ShapedContact(PressedSolid):
         distance = np.hypot(x, y) / (AXIS[1] * self._units.length)
         safety = SAFETY * (1 + (AXIS[0] - 1) * np.maximum(1 - distance, 0))
         floor = self._errors[2] + smeared
-        if self.truncated is not None:
-            floor = floor + self.truncated.largest * self._units.pressure
         return ElementAnswer(value, np.maximum(safety * U, SAFETY * self.typical) + floor)
 
     @property
@@ -195,11 +172,11 @@ class ShapedContact(PressedSolid):
     def _pressure(self, points: Any, stated: bool) -> ElementAnswer:
         """Pressure [Pa], uncertain by the change from the companion and that of the peak."""
         p = self._given(points)
-        if not stated or self._coarse is None or self.truncated is None:
+        if not stated or self._coarse is None or self.further is None:
             return ElementAnswer(p)
-        other, lower = (self._other(points, one) for one in (self._coarse.pressure, self.truncated.lower))
-        cut = self.truncated.share * np.abs(other - lower)
-        return ElementAnswer(p, SAFETY * np.abs(p - other) + cut + self._errors[2])
+        other, further = (self._other(points, one) for one in (self._coarse.pressure, self.further))
+        change = SAFETY * np.abs(p - other) + np.abs(other - further)
+        return ElementAnswer(p, change + self._errors[2])
 
     def _other(self, points: Any, pressure: StarPressure) -> np.ndarray:
         """Another pressure [Pa] at the points that are compared."""
@@ -232,7 +209,7 @@ def solve_shape(
     size: float | None = None,
     surface: float | None = None,
     far: float = 1000.0,
-    degree: int = DEGREE,
+    degree: int | None = None,
     first: float = 1.0,
     estimate_uncertainty: bool = True,
 ) -> ShapedContact:
@@ -259,10 +236,12 @@ def solve_shape(
     layers = [(coatings, substrate)] + ([(ball[2], ball[:2])] if ball else [])
     compliance = sum((1 - nu**2) / modulus for _, (modulus, nu) in layers)
     half = load / 2 if shape.centre else load
+    waves = max(shape.fold, 2)
     axes = hertz_axes(shape.curvatures, half, compliance)
     begin = StarPressure.of_ellipse(
         shape.centre, (first * axes[0], first * axes[1]), load / E, shape.fold, ROUGH_DEGREE
     )
+    degree = DEGREE * waves if degree is None else degree
 
     def solids(reach: float) -> tuple[LayeredSolid, ...]:
         scaled = tuple(LayeredSolid.scaled(*one, reach, far, E) for one in layers)
@@ -307,9 +286,9 @@ def solve_shape(
     # six digits, lest the mesh follow the rounding
     reach = float(f"{MARGIN * begin.reach[1]:.6g}")
     if harmonics is None:
-        waves = np.pi / begin.scaled(reach).end_angle(float(surface_size(surface, 0.0)))
+        at_end = np.pi / begin.scaled(reach).end_angle(float(surface_size(surface, 0.0)))
         fold = shape.turns
-        harmonics = fold * int(np.ceil(usual[2] / fold * max(1.0, AT_END * waves / QUALITIES["default"][2])))
+        harmonics = fold * int(np.ceil(usual[2] / fold * max(1.0, AT_END * at_end / QUALITIES["default"][2])))
     check_positive(harmonics=harmonics)
     unit = Units(length=reach, pressure=E, modulus=E)
 
@@ -320,17 +299,17 @@ def solve_shape(
     sliding = (friction, -friction)
     fine = [_fields(found, k, sliding[k], surface) for k in range(len(layers))]
     coarse: list[OffAxisFields | None] = [None] * len(layers)
-    uncertainty, extents, truncated = None, None, None
+    uncertainty, extents, further = None, None, None
     if estimate_uncertainty:
         coarser = ShapedGrid(COARSER * size, COARSER * surface, harmonics, MARGIN, DENSITY / COARSER)
         start = found.pressure.scaled(1 / reach)
         companion = on_mesh(reach, coarser, start)
-        low = [companion.of_degree(degree - k, *arguments(reach, coarser)) for k in (2, 4)]
-        truncated = Truncation.of(companion.pressure, *(one.pressure for one in low))
+        higher = companion.of_degree(degree + 2, *arguments(reach, coarser))
+        further = higher.pressure
         coarse = [_fields(companion, k, sliding[k], COARSER * surface) for k in range(len(layers))]
         change = SAFETY * np.abs(numbers - _numbers(companion))
         change[1] = max(change[1], STIFF * (size / QUALITIES["default"][0]) ** 4 * numbers[1])
-        cut = truncated.share * np.abs(_numbers(companion) - _numbers(low[0]))
+        cut = np.abs(_numbers(companion) - _numbers(higher))
         left = np.maximum(residual, SAFETY * found.errors) * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
@@ -368,7 +347,7 @@ def solve_shape(
                 uncertainty=uncertainty,
                 extent_uncertainty=extents,
                 height=shape.height,
-                truncated=truncated,
+                further=further,
                 typical=_typical(PressedSolid(*pair, unit)) if estimate_uncertainty else 0.0,
                 opposite=sides[0] if sides else None,
             )

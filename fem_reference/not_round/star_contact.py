@@ -78,7 +78,7 @@ class StarPressure:
     @cached_property
     def waves(self) -> tuple[int, ...]:
         """n of the contour."""
-        return tuple(range(0, min(self.degree + 2, max(HIGHEST, 2 * self.fold)) + 1, self.fold))
+        return tuple(range(0, min(self.degree + 2, max(HIGHEST, 3 * self.fold)) + 1, self.fold))
 
     def terms(self, degree: int) -> tuple[tuple[int, int], ...]:
         """(n, j) with n + 2 j up to ``degree``."""
