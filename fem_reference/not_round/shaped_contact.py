@@ -104,6 +104,7 @@ class ShapedContact(PressedSolid):
     typical: float = 0.0
     opposite: "ShapedContact | None" = field(default=None, repr=False)
     frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
+    coarser: ClassVar = None  # the companion is no solution of its own
 
     def sample(self, points: Any, quantity: str, uncertainty: bool = True) -> ElementAnswer:
         """Value of a quantity at points, with its uncertainty when it was estimated.
