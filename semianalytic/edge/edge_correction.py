@@ -19,9 +19,9 @@ from semianalytic.patches.level import Level, LevelProblem
 
 Array = NDArray[np.floating]
 
-ROUNDS = 8  # at most
+ROUNDS = 10  # at most
 HELD = 2  # rounds from patches alone in which the edge is held
-STILL = 5e-4  # of a patch: a smaller movement of the edge in a round leaves less than a ten-thousandth
+STILL = 2e-5  # of a patch; 5e-4 left the pressure of four layers on three 3e-7 p0 too low, with one sign
 # patches by which the pressures near a smooth edge may miss f; in the first rounds
 MISFIT, COARSE_MISFIT = 0.3, 2.0
 LOST = 0.2  # of the load, the most that constant patches miss of a pressure with a smooth edge

@@ -98,7 +98,7 @@ def alarms(
         require_checkout(records, "--records")
     require_gmsh()
 
-    from verification.report.report_material import Material
+    from verification.report.report_material import ReportMaterial
     from verification.report.report_page import write_report
 
     started = datetime.datetime.now(datetime.UTC)
@@ -112,7 +112,7 @@ def alarms(
         results = [kept.get(case.name) or solved[case.name] for case in cases]
         of = f"--count {count} --seed {seed} {kind}".rstrip()
         info = run_info(f"tests/tools alarms {of}", started, jobs, scheduler)
-        page = write_report(Material(results, info), output, junit_xml(results, info))
+        page = write_report(ReportMaterial(results, info), output, junit_xml(results, info))
         found = counted(results, seed, info)
         stored = write_record(records, found) if record else None
     if as_json:

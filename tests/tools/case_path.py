@@ -15,7 +15,7 @@ from verification.report import report_page
 from verification.running.checked_files import read_checked
 
 ROOT = Path(report_page.__file__).parents[2]
-GIVEN = {"Case", "PublishedCase", "_CaseFile", "CaseResult", "Material"}
+GIVEN = {"Case", "PublishedCase", "_CaseFile", "CaseResult", "ReportMaterial"}
 found = {}
 
 

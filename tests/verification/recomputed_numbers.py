@@ -77,4 +77,4 @@ def share(held):
 
 
 if __name__ == "__main__":
-    sys.exit("\n".join(differing(Path(sys.argv[1]))))
+    sys.exit("\n".join(differing(Path(sys.argv[1]))) or 0)

@@ -143,11 +143,11 @@ def run(
                 passed=all(test.passed for test in tests),
                 studies=[study.outcome for study in studies],
             )
-            from verification.report.report_material import Material
+            from verification.report.report_material import ReportMaterial
             from verification.report.report_page import write_report
 
             evidence = replace(evidence, accuracy=accuracy, baseline=beside)
-            material = Material(results, info, evidence, read_planes(output, results))
+            material = ReportMaterial(results, info, evidence, read_planes(output, results))
             page = write_report(material, output, junit)
     except KeyboardInterrupt:
         return _stopped(chosen, output)

@@ -26,7 +26,7 @@ Reading = Callable[[CoatedContact], tuple[Change, Change]]
 
 @dataclass(frozen=True)
 class Assumption:
-    """What all sources assume, with its ``title`` in sentences.
+    """An assumption of all sources, with its ``title`` in sentences.
 
     change : change of a contact by dropping it, with the uncertainty; ValueError where there is none.
         None where the model is too slow for this, so that its map is read.
@@ -67,24 +67,15 @@ class Cost:
     uncertainty: float
 
     @property
-    def name(self) -> str:
-        """The quantity in words."""
-        return WORDS.get(self.quantity, self.quantity)
-
-    @property
     def size(self) -> float:
         """Magnitude of the change and its uncertainty together."""
         return abs(self.change) + self.uncertainty
 
     @property
-    def percent(self) -> str:
-        """The size in per cent, with a bound where it is tiny."""
-        return _percent(self.size)
-
-    @property
     def words(self) -> str:
-        """Size, quantity and assumption."""
-        return f"{self.percent} of the {self.name} ({self.assumption})"
+        """Size in per cent, with a bound where it is tiny, and quantity."""
+        percent = f"{100 * self.size:.2g} %" if self.size >= LEAST else "less than 0.0001 %"
+        return f"{percent} of the {WORDS.get(self.quantity, self.quantity)}"
 
 
 @dataclass(frozen=True)
@@ -108,7 +99,7 @@ class ModelError:
     @property
     def parts(self) -> tuple[str, ...]:
         """The dominating costs, each with its assumption."""
-        return tuple(one.words for one in self.dominating)
+        return tuple(f"{one.words} ({one.assumption})" for one in self.dominating)
 
     def message(self) -> str:
         """One sentence: how good the model is."""
@@ -128,7 +119,7 @@ class ModelError:
         others = dict.fromkeys(one.assumption for one in self.costs if one.assumption not in named)
         worst = [cost for one in others if (cost := self.largest(assumption=one)) and cost.size >= LEAST]
         unknown = (f"not known here: {assumption} ({reason})" for assumption, reason in self.missing)
-        return (*(f"less: {one.words}" for one in worst), *unknown)
+        return (*(f"less: {one.words} ({one.assumption})" for one in worst), *unknown)
 
     def warnings(self, judged: Collection[str] = QUANTITIES, told: Sequence[str] = ()) -> tuple[str, ...]:
         """A line for each assumption that costs more than ``LIMIT`` of a quantity among ``judged``.
@@ -141,12 +132,12 @@ class ModelError:
                 continue
             worst = self.largest(judged, one.title)
             if worst is not None and worst.size > LIMIT:
-                found.append(f"{one.title} costs {_percent(worst.size)} of the {worst.name}")
+                found.append(f"{one.title} costs {worst.words}")
         return tuple(found)
 
 
 def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> ModelError:
-    """What the assumptions cost at ``problem``, in tenths of a second; in seconds under h < a_h/20.
+    """Costs of the assumptions at ``problem``, in tenths of a second; in seconds under h < a_h/20.
 
     maps : to read the assumptions in that are not evaluated; those of the package if None.
     """
@@ -182,10 +173,6 @@ def judged_quantities(claimed: Collection[str]) -> tuple[str, ...]:
         "shear": ("sigma_xz",),
     }
     return tuple(name for name in QUANTITIES if any(one in claimed for one in by.get(name, (name,))))
-
-
-def _percent(size: float) -> str:
-    return f"{100 * size:.2g} %" if size >= LEAST else "less than 0.0001 %"
 
 
 def _read(maps: AssumptionMaps, name: str, problem: CoatedContact) -> tuple[Change, Change]:

@@ -49,7 +49,7 @@ class Place:
 
 
 def places_of(problem: CoatedContact) -> tuple[Place, ...]:
-    """Where ``problem`` lies: one place for each Poisson's ratio that occurs in it.
+    """Places of ``problem`` on the maps: one for each Poisson's ratio that occurs in it.
 
     Without a coating ``ratio`` is 1 and the thickness is of no importance.
     Raises ValueError where the maps cannot hold it: several coatings, a coated ball.
@@ -213,7 +213,7 @@ class AssumptionMap:
 
     @cached_property
     def _scales(self) -> Array:
-        """What the changes vanish with, at every node."""
+        """Factors that the changes vanish with, at every node."""
         total = np.ones_like(self.change)
         for j, axis in enumerate(self.axes, start=1):
             along = np.stack([self._scale(axis, value) for value in axis.values], axis=1)

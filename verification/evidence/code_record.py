@@ -86,7 +86,7 @@ def shared(first: Imports, second: Imports) -> tuple[str, ...]:
 
 
 def shared_functions(first: Imports, second: Imports) -> tuple[str, ...]:
-    """What both use of NumPy and SciPy, by full names."""
+    """Names that both use of NumPy and SciPy, in full."""
     return tuple(sorted(set(first.functions) & set(second.functions)))
 
 

@@ -85,7 +85,7 @@ class Enclosure:
 
     @property
     def problem(self) -> CoatedContact:
-        """As the sources solve it."""
+        """The problem as the sources solve it."""
         return CoatedContact(self.radius, self.load, self.coatings, self.substrate)
 
 

@@ -1,4 +1,4 @@
-"""What notices a fault of the semi-analytical method first, from a comparison down to the unit tests."""
+"""The check that notices a planted fault first, from a comparison down to the unit tests."""
 
 from collections.abc import Iterable
 from enum import StrEnum
@@ -7,7 +7,7 @@ from verification.evidence.fault_record import COMPARISONS, SMALLEST_CHANGE, Fau
 
 
 class Noticed(StrEnum):
-    """What noticed a fault first, in this order; the first three count in the headline."""
+    """Checks that notice a fault, in this order; the first three count in the headline."""
 
     COMPARISON = "comparison"
     INVARIANT = "invariant"

@@ -1,7 +1,6 @@
 """Pages of the shipped cases, generated from case files with the numbers of the baseline."""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -23,47 +22,18 @@ SEEN = {
     "quoted": "quoted elsewhere",
     "recomputed": "recomputed",
 }
-CONTACTS = """
-`coatcheck run` solves these cases by both methods and every reference that supports them. The numbers on
-these pages are those of the baseline of this version; `coatcheck run NAME` computes them anew.
-
-```{generated} headline
-```
-"""
-PUBLISHED = """
-`coatcheck run published` compares both methods and the exact integral equation with published tables. A value
-is met when the difference is within the uncertainty of the method plus that of the published value: half of
-its last digit, unless a digitisation uncertainty is stated. A published value that is off by more is a
-departure: it is listed with its size in the table's file, compared after correction, and not counted. Values
-that were recomputed from formulas are compared and not counted either.
-
-```{generated} published_counts
-```
-"""
-
-
 WORST = (
     "The largest difference of each pair of sources on all lines, over the scale of the comparison, with the "
     "largest $U$ on that line:"
 )
 
 
-def contact_pages() -> Iterator[tuple[str, str | bytes]]:
-    """Path with content of the page of every contact case, then their list."""
+def case_pages() -> Iterator[tuple[str, str]]:
+    """Path with content of the page of every contact case and of every published case."""
     for name in default_cases():
         yield f"cases/{name}.md", _contact_page(stored(name))
-    yield "cases/index.md", _index("Cases of the default run", CONTACTS, default_cases())
-
-
-def published_pages() -> Iterator[tuple[str, str | bytes]]:
-    """Path with content of the page of every published case, then their list."""
     for name, path in published_cases().items():
         yield f"published/{name}.md", _published_page(read_published(path))
-    yield "published/index.md", _index("Published cases", PUBLISHED, published_cases())
-
-
-def _index(title: str, text: str, names: Any) -> str:
-    return f"# {title}\n{text}\n```{{toctree}}\n:maxdepth: 1\n\n{chr(10).join(names)}\n```\n"
 
 
 def _problem(result: CaseResult) -> list[str]:

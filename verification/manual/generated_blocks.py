@@ -6,6 +6,7 @@ Every number comes from the baseline or a record of this version.
 import re
 from collections.abc import Callable
 from datetime import datetime
+from importlib.metadata import version
 from pathlib import Path
 
 from verification.cases.case_file import default_cases
@@ -61,7 +62,7 @@ over the smaller of $\delta_h$ and $\delta$.
 
 
 def totals() -> str:
-    """What the default run judges, in one sentence."""
+    """Counts of the default run, in one sentence."""
     known = baseline()
     contacts = [name for name in known.cases if not known.published(name)]
     comparisons = sum(len(c.pairs) for name in contacts for c in known.manifests[name].comparisons)
@@ -160,6 +161,19 @@ def false_alarms() -> str:
     return f"{text}\n\n{table(head, rows, 1)}"
 
 
+def citation() -> str:
+    """An entry of BibTeX for this version."""
+    fields = {
+        "author": "{the coatcheck developers}",
+        "title": "coatcheck: verification of coated point contact by two independent methods and exact "
+        "references",
+        "version": version("coatcheck"),
+        "doi": "",
+    }
+    lines = (f"  {name} = {{{value}}}," for name, value in fields.items())
+    return "\n".join(["```bibtex", "@software{coatcheck,", *lines, "}", "```"])
+
+
 def real_guests() -> str:
     """Codes of others examined: cases, largest differences, time, memory."""
     return shown(guests_section.section().parts[0].tables[0])
@@ -169,14 +183,6 @@ def history() -> str:
     """Updates of the baseline with their reasons, the last first."""
     rows = [[_day(u.when), str(u.numbers), text(u.why)] for u in reversed(baseline().history)]
     return table(["date", "numbers", "reason"], rows)
-
-
-def more_pages() -> str:
-    """Table of contents of the pages that the index does not name."""
-    index = (SOURCE / "index.md").read_text(encoding="utf-8")
-    named = set(re.findall(r"^\w+$", index, re.MULTILINE))
-    more = [path.stem for path in sorted(SOURCE.glob("*.md")) if path.stem not in {*named, "index"}]
-    return "\n".join(["```{toctree}", ":maxdepth: 1", ":caption: More", "", *more, "```"]) if more else ""
 
 
 def enclosures() -> str:
@@ -204,7 +210,7 @@ def enclosures() -> str:
 
 
 def assumption_costs() -> str:
-    """Where each measured assumption costs 0.1, 1 and 5 %, and the largest change of its map."""
+    """Places at which each measured assumption costs 0.1, 1 and 5 %, and the largest change of its map."""
     maps = read_maps(RECORDS)
     assert maps is not None
     return paragraphs(model_section.parts(maps.maps))
@@ -225,10 +231,10 @@ _ALL: tuple[Callable[[], str], ...] = (
     fault_score,
     false_alarms,
     real_guests,
+    citation,
     history,
     solved,
     enclosures,
     assumption_costs,
-    more_pages,
 )
 BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL} | WORKED

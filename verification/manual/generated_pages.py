@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from importlib import import_module
 from pathlib import Path
 
-from verification.manual.case_pages import contact_pages, published_pages
+from verification.manual.case_pages import case_pages
 from verification.manual.tour_output import picture
 
 PACKAGE = Path(__file__).resolve().parents[1]
@@ -31,8 +31,7 @@ for key in COMMANDS:
 
 def generated_pages() -> Iterator[tuple[str, str | bytes]]:
     """Path under the source folder with the content of every generated page or figure."""
-    yield from contact_pages()
-    yield from published_pages()
+    yield from case_pages()
     yield from _api()
     yield from _gallery()
     yield "commands.md", _commands()

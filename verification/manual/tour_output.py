@@ -1,4 +1,4 @@
-"""What coatcheck solve prints for the tour and for the worked examples, with the picture of the tour."""
+"""Output of coatcheck solve for the tour and for the worked examples, with the picture of the tour."""
 
 import os
 import re
@@ -36,7 +36,7 @@ def _run() -> tuple[str, bytes]:
 
 
 def transcript(words: Sequence[str], work: Path, *before: str) -> str:
-    """What ``coatcheck`` with these ``words`` prints in the folder ``work``, warnings first, as a block.
+    """Output of ``coatcheck`` with these ``words`` in the folder ``work``, warnings first, as a block.
 
     before : lines above it.
     """

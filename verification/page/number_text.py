@@ -37,7 +37,7 @@ def aligned(values: Sequence[tuple[Any, Any] | None], unit: str) -> tuple[str, l
 
 
 def _parted(value: Any, uncertainty: Any, factor: float) -> tuple[str, str]:
-    """What stands before the decimal point; the rest."""
+    """The text before the decimal point; the rest."""
     number, stated = _number(value), _number(uncertainty)
     if number is None or (uncertainty is not None and not 0 <= (-1.0 if stated is None else stated) < 1e30):
         return "not finite", ""

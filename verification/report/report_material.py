@@ -39,7 +39,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Evidence:
-    """What a report shows beside the results; None or () for what is missing, see ``failures``.
+    """Evidence that a report shows beside the results; None or () for what is missing, see ``failures``.
 
     code, faults, alarms, enclosures, validation : read from records.
     accuracy : errors of the methods over resolution.
@@ -86,7 +86,7 @@ class Modelled:
 
     @classmethod
     def of(cls, case: Case) -> "Modelled":
-        """That of a case file."""
+        """The contact of a case file."""
         return cls(case.problem, frozenset(claim.quantity for claim in case.claims), case.warnings)
 
 
@@ -136,7 +136,7 @@ def gather(
 
 
 @dataclass(frozen=True, eq=False)
-class Material:
+class ReportMaterial:
     """Everything a report is made from.   planes : stresses below the contact, by name of the case."""
 
     results: Sequence[CaseResult]
@@ -179,7 +179,7 @@ class Material:
         return anchors
 
 
-def stored_material(folder: Path) -> tuple[Material, bool]:
+def stored_material(folder: Path) -> tuple[ReportMaterial, bool]:
     """The material of the run in ``folder``, and whether its evidence is that of the run.
 
     Where report.json is missing or of other results, as after a run that was stopped, provenance and
@@ -200,7 +200,7 @@ def stored_material(folder: Path) -> tuple[Material, bool]:
     try:
         if [to_json(result) for result in results] == last["cases"]:
             info, evidence = decode(RunInfo, last["run"]), decode(Evidence, last["evidence"])
-            return Material(results, info, evidence, planes), True
+            return ReportMaterial(results, info, evidence, planes), True
     except (KeyError, ValueError):
         pass
     times = [path.stat().st_mtime for path in (folder / "cases").glob("*.json")]
@@ -215,7 +215,7 @@ def stored_material(folder: Path) -> tuple[Material, bool]:
     )
     path = accuracy_study.task(folder).path
     accuracy = accuracy_study.from_json(read_checked(path)) if path.exists() else None
-    return Material(results, info, Evidence(accuracy=accuracy), planes), False
+    return ReportMaterial(results, info, Evidence(accuracy=accuracy), planes), False
 
 
 def _last_report(folder: Path) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from verification.page.page_parts import Part, Section, joined
 from verification.regression import baseline_section
 from verification.regression.baseline_change import regression_json
 from verification.report.credibility import credibility_statement, detection_sections, model_section
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.sections import (
     accuracy_section,
     first_page,
@@ -48,7 +48,7 @@ def _dated(section: Section | None, *, older: bool) -> Section | None:
     return replace(section, parts=[Part(text), *section.parts])
 
 
-def _sections(material: Material) -> list[tuple[str, list[Section]]]:
+def _sections(material: ReportMaterial) -> list[tuple[str, list[Section]]]:
     """Pages about the run as a whole in their order, under the headings of the contents."""
     contacts, published, anchors = material.contacts, material.published, material.anchors
     found, study, faults = material.evidence, material.evidence.accuracy, material.evidence.faults
@@ -85,7 +85,7 @@ def _sections(material: Material) -> list[tuple[str, list[Section]]]:
     return [(group, shown) for group, pages in groups if (shown := [page for page in pages if page])]
 
 
-def render(material: Material) -> str:
+def render(material: ReportMaterial) -> str:
     """The whole page as text. Every string of a result is escaped: a title "<script>" stays text."""
     # Results may hold numbers that overflow or are not finite; the page shows them as they are.
     with np.errstate(all="ignore"):
@@ -103,14 +103,14 @@ def render(material: Material) -> str:
         )
 
 
-def write_report(material: Material, folder: Path, junit: str) -> Path:
+def write_report(material: ReportMaterial, folder: Path, junit: str) -> Path:
     """Write report.html and report.json into ``folder``, with ``junit`` beside them; the path of the page."""
     texts = {"report.html": render(material), "report.json": report_json(material), "junit.xml": junit}
     write_together(folder, texts)
     return folder / "report.html"
 
 
-def report_json(material: Material) -> str:
+def report_json(material: ReportMaterial) -> str:
     """Everything the report is made from as strict JSON of schema ``coatcheck-report/1``.
 
     ``evidence`` is all that ``coatcheck report`` needs beside the results; ``accuracy`` and ``baseline``

@@ -19,7 +19,7 @@ from verification.cases.case_file import shaped_cases, shipped_cases
 from verification.cases.published_file import published_cases
 from verification.commands.compare import compare
 from verification.commands.shipped.list_cases import list_cases
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.report_page import report_json
 from verification.running.case_result import to_json
 from verification.running.checked_files import write_checked
@@ -44,7 +44,7 @@ def stored(tmp_path):
     ]
     for result in results:
         write_checked(tmp_path / "run" / "cases" / f"{result.name}.json", to_json(result))
-    (tmp_path / "run" / "report.json").write_text(report_json(Material(results, INFO)))
+    (tmp_path / "run" / "report.json").write_text(report_json(ReportMaterial(results, INFO)))
     return tmp_path / "run"
 
 
@@ -90,7 +90,7 @@ def test_names_are_whole_in_a_terminal(stored, screen, width):
     shown = screen(width)
     name = "16_ratio_quarter_sliding_of_mine"
     results = [replace(result, name=name) for result in read_run(stored).results[:1]]
-    (stored / "report.json").write_text(report_json(Material(results, INFO)))
+    (stored / "report.json").write_text(report_json(ReportMaterial(results, INFO)))
     assert list_cases() == 0
     assert compare(stored, stored) == 0
     names = [name, *shipped_cases(), *shaped_cases(), *published_cases()]

@@ -7,7 +7,6 @@ from types import SimpleNamespace
 
 import pytest
 from faults_planted import short_study
-from faults_planted.fault_anchor import Change
 from faults_planted.fault_catalogue import FAULTS
 from faults_planted.fault_planting import planted
 
@@ -61,39 +60,6 @@ def clean():
 def test_every_part_meets_its_limit(clean):
     assert [row.name for row in clean if row.outcome is not Outcome.AGREES] == []
     assert {row.name.partition(":")[0] for row in clean} == {"coated", "uncoated", "compliant film", *FILMS}
-
-
-@pytest.mark.parametrize(
-    ("edit", "part"),
-    [
-        (
-            Change(
-                "semianalytic:surface_coefficients",
-                "1 / (np.pi * body.contact_modulus)",
-                "1.0001 / (np.pi * body.contact_modulus)",
-            ),
-            "central deflection",
-        ),
-        (Change("semianalytic:panels", "weight * radius", "1.0001 * weight * radius"), "stress, inside"),
-        (
-            Change("semianalytic:samples", "(across - 4 * middle) / 24", "(across - 4 * middle) / 12"),
-            "stress on a plane",
-        ),
-        (
-            Change(
-                "semianalytic:even_convolution",
-                "_even_spectrum(kernel, good_size(2 * nx - 1), good_size(2 * ny - 1), threads)",
-                "_even_spectrum(kernel[:nx - 1, :ny - 1], 2 * nx - 4, 2 * ny - 4, threads)",
-            ),
-            "convolution",
-        ),
-    ],
-    ids=["coefficients", "rings", "patches", "padding"],
-)
-def test_a_spoiled_part_does_not(edit, part):
-    with planted((edit,)):
-        bad = [row.name for row in short_study.quick() if row.outcome is Outcome.DISAGREES]
-    assert any(name.endswith(part) for name in bad), bad
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from verification.regression.baseline_change import (
 )
 from verification.regression.baseline_file import path_in, points_by_line, read_baseline, write_baseline
 from verification.regression.number_drift import RELATIVE, State, drift, measured
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, to_json
 from verification.running.checked_files import write_checked
@@ -125,7 +125,7 @@ def test_an_update_keeps_every_reason_with_what_changed(tmp_path):
 def run_directory(folder: Path, results: list[CaseResult]) -> None:
     """What a run leaves: the report with a checked file beside it for each case."""
     folder.mkdir()
-    (folder / "report.json").write_text(report_json(Material(results, INFO)))
+    (folder / "report.json").write_text(report_json(ReportMaterial(results, INFO)))
     for result in results:
         write_checked(folder / "cases" / f"{result.name}.json", to_json(result))
 

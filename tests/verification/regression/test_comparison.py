@@ -11,7 +11,7 @@ from synthetic_results import INFO, STEEL, contact, result_of
 from verification.judging.verdict import Outcome
 from verification.regression.number_drift import State
 from verification.regression.run_comparison import compare_runs
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.stored_run import StoredRun
@@ -33,7 +33,7 @@ def run_of(*results: CaseResult, info: RunInfo = INFO) -> StoredRun:
 
 def write(folder: Path, *results: CaseResult, info: RunInfo = INFO) -> None:
     folder.mkdir(parents=True)
-    (folder / "report.json").write_text(report_json(Material(results, info)))
+    (folder / "report.json").write_text(report_json(ReportMaterial(results, info)))
 
 
 def test_a_run_beside_itself_shows_nothing():

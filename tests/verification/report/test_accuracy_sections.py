@@ -9,13 +9,13 @@ from synthetic_study import elements, study
 
 from verification.credibility.accuracy_study import failed
 from verification.credibility.refinement_studies import QUANTITIES
-from verification.report.report_material import Evidence, Material
+from verification.report.report_material import Evidence, ReportMaterial
 from verification.report.report_page import render
 from verification.report.sections.refinement_section import finite_element_section, semianalytic_section
 
 
-def material(found) -> Material:
-    return Material([], INFO, Evidence(accuracy=found))
+def material(found) -> ReportMaterial:
+    return ReportMaterial([], INFO, Evidence(accuracy=found))
 
 
 def test_every_quantity_has_a_figure_with_every_curve():

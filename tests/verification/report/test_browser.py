@@ -7,7 +7,7 @@ from headless import Page, browser, page
 from synthetic_results import INFO, showcase
 from synthetic_study import study
 
-from verification.report.report_material import Evidence, Material
+from verification.report.report_material import Evidence, ReportMaterial
 from verification.report.report_page import write_report
 from verification.sampling.stress_plane import sample_plane
 from verification.sources.references.hertz import Hertz
@@ -26,7 +26,7 @@ def report(tmp_path_factory):
     hertz = Hertz(problem["radius"], problem["load"], *problem["substrate"])
     plane = sample_plane(tuple(problem["interfaces"]), {"semianalytic": hertz, "fem_reference": hertz})
     evidence = Evidence(accuracy=study("order 3: the mesh has no triangles"))
-    return write_report(Material(results, INFO, evidence, {results[0].name: plane}), folder, "")
+    return write_report(ReportMaterial(results, INFO, evidence, {results[0].name: plane}), folder, "")
 
 
 @pytest.fixture(scope="module")

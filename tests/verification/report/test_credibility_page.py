@@ -17,7 +17,7 @@ from verification.page.page_parts import Part, Section
 from verification.problem.quantity import SCALARS, SLOPES
 from verification.report.credibility import credibility_statement
 from verification.report.credibility.detection_sections import faults_section
-from verification.report.report_material import Evidence, Material, gather
+from verification.report.report_material import Evidence, ReportMaterial, gather
 from verification.report.report_page import render
 from verification.report.sections import first_page
 from verification.report.sections.accuracy_section import coverage_table
@@ -42,7 +42,7 @@ def evidence(tmp_path_factory) -> Evidence:
 
 
 def section(evidence: Evidence, results: list[CaseResult] = RESULTS, **more) -> Section:
-    material = Material(results, INFO, replace(evidence, **more))
+    material = ReportMaterial(results, INFO, replace(evidence, **more))
     found = credibility_statement.section(material, coverage_table(material.contacts))
     assert found is not None
     return found
@@ -156,14 +156,14 @@ def test_an_old_record_is_marked_on_its_page_and_on_the_first(evidence):
             "f", "frf", "f is wrong", "semianalytic", Catch.DISAGREES, True, "", {}, 1.0, "", 2.0, ()
         )
         record = replace(EMPTY, rows=(one,))
-        text = render(Material(RESULTS, INFO, replace(evidence, faults=record, older=older)))
+        text = render(ReportMaterial(RESULTS, INFO, replace(evidence, faults=record, older=older)))
         assert text.count(" older ") == (2 if older else 0)
         assert "2026-10-09, c0ffee12" in text
 
 
 def test_comparisons_are_counted_by_what_their_sources_share_and_no_contact_twice():
     def counted(*results) -> dict[str, str]:
-        return {item.name: item.value for item in first_page.agreements(Material(results, INFO))}
+        return {item.name: item.value for item in first_page.agreements(ReportMaterial(results, INFO))}
 
     def total(found) -> int:
         return sum(int(found[kind].split()[-1]) for kind in Independence if kind in found)
@@ -183,7 +183,7 @@ def test_comparisons_are_counted_by_what_their_sources_share_and_no_contact_twic
 
 
 def test_what_both_methods_share_is_read_from_their_source(evidence, tmp_path, monkeypatch):
-    said = dict(first_page.shared(Material(RESULTS, INFO, evidence)))
+    said = dict(first_page.shared(ReportMaterial(RESULTS, INFO, evidence)))
     first, second = evidence.parts[:2]
     assert (
         said["code"] == f"none, by {sum(p.statements for p in evidence.parts)} imports; both use numpy, scipy"
@@ -193,7 +193,7 @@ def test_what_both_methods_share_is_read_from_their_source(evidence, tmp_path, m
     both = (replace(first, functions=("scipy.special.j0",)), replace(second, functions=("scipy.special.j0",)))
     parts = (*both, replace(first, forbidden=("a imports b",)))
     wrong = replace(evidence, code=replace(evidence.code, parts=parts))
-    said = dict(first_page.shared(Material(RESULTS, INFO, wrong)))
+    said = dict(first_page.shared(ReportMaterial(RESULTS, INFO, wrong)))
     assert (said["code"], said["special functions"]) == ("a imports b", "scipy.special.j0")
 
 
@@ -202,7 +202,7 @@ def test_the_largest_cost_of_an_assumption_names_its_case(evidence):
         r.name: ModelError((Cost("small strains", "tension", c, 0.0),))
         for r, c in zip(RESULTS, (0.01, -0.057), strict=True)
     }
-    (row,) = first_page.model_costs(Material(RESULTS, INFO, replace(evidence, models=costs)))
+    (row,) = first_page.model_costs(ReportMaterial(RESULTS, INFO, replace(evidence, models=costs)))
     assert (row.value, row.note) == ("5.7 % of the tension at the trailing edge", RESULTS[1].title)
 
 

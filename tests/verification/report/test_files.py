@@ -9,7 +9,7 @@ from synthetic_results import INFO, STEEL, contact, result_of, showcase
 
 from verification.regression.junit_xml import junit_xml
 from verification.report import report_page as report_files
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.report_page import write_report
 from verification.running import checked_files
 from verification.running.case_result import SCHEMA, from_json
@@ -26,13 +26,13 @@ def results():
 
 
 def test_a_report_is_three_files_and_nothing_else(tmp_path, results):
-    page = write_report(Material(results, INFO), tmp_path / "new" / "folder", JUNIT)
+    page = write_report(ReportMaterial(results, INFO), tmp_path / "new" / "folder", JUNIT)
     assert page == tmp_path / "new" / "folder" / "report.html"
     assert {path.name for path in page.parent.iterdir()} == {"report.html", "report.json", "junit.xml"}
 
 
 def test_an_earlier_report_survives_whatever_goes_wrong(tmp_path, results, monkeypatch):
-    write_report(Material([], INFO), tmp_path, JUNIT)
+    write_report(ReportMaterial([], INFO), tmp_path, JUNIT)
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
 
     def full(_):
@@ -45,18 +45,20 @@ def test_an_earlier_report_survives_whatever_goes_wrong(tmp_path, results, monke
         with monkeypatch.context() as patched:
             patched.setattr(place, name, fault)
             with pytest.raises(error):
-                write_report(Material(results, INFO), tmp_path, JUNIT)
+                write_report(ReportMaterial(results, INFO), tmp_path, JUNIT)
     assert {path.name: path.read_bytes() for path in tmp_path.iterdir()} == before
 
 
 def test_a_title_that_is_no_text_costs_no_report(tmp_path):
     # Lone surrogates are legal in JSON, so they can come back from a stored result.
-    write_report(Material([result_of(contact(), title="half \ud800 pair", points=11)], INFO), tmp_path, JUNIT)
+    write_report(
+        ReportMaterial([result_of(contact(), title="half \ud800 pair", points=11)], INFO), tmp_path, JUNIT
+    )
     assert "half ? pair" in (tmp_path / "report.html").read_text(encoding="utf-8")
 
 
 def test_json_is_strict_versioned_and_complete(tmp_path, results):
-    write_report(Material(results, INFO), tmp_path, JUNIT)
+    write_report(ReportMaterial(results, INFO), tmp_path, JUNIT)
     text = (tmp_path / "report.json").read_text()
     data = json.loads(text, parse_constant=pytest.fail)
     assert data["schema"] == SCHEMA == "coatcheck-report/1"

@@ -1,12 +1,11 @@
-"""Invariants in a result: what they do to its outcome, its files and its page; coverage; parameters."""
+"""Invariants in a result: what they do to its outcome, its files and its page."""
 
 from dataclasses import replace
 
-from synthetic_results import STEEL, contact, result_of
+from synthetic_results import contact, result_of
 
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
-from verification.report.sections.case_page import dominating_parameter
 from verification.report.sections.invariants_section import invariant_table, section
 
 HOLDS = Invariant("load balance", "semianalytic", 1e-7, 1e-5, Outcome.AGREES, "int p dA = W: off by 1e-07")
@@ -49,18 +48,3 @@ def test_section_gathers_the_layers_of_a_law_over_all_cases():
     held = next(cell for cell in rows["equilibrium"].cells if cell.text)
     assert (held.text, held.href) == ("2 of 3", "#case-slipped-invariants")
     assert section([replace(SOUND, invariants=())], {}) is None
-
-
-def test_dominating_parameter_is_the_largest_share_of_the_less_certain_side():
-    result = result_of(contact((2 * STEEL[0], 0.3, 1.0)), points=31)
-    found = {
-        (claim.quantity, claim.line): dominating_parameter(result, claim, verdict)
-        for claim, verdict in result.verdicts
-        if claim.between == ("semianalytic", "integral_equation")
-    }
-    assert found["approach", "contact"] == "semi-analytical: patch or element size"
-    assert found["sigma_xx", "axis"] == "semi-analytical: patch or element size"
-    claim, verdict = result.verdicts[0]
-    rows = tuple(("peak_pressure", parameter, value) for parameter, value in (("size", 1e3), ("domain", 1e9)))
-    sources = tuple(replace(s, budget=rows) for s in result.sources)
-    assert dominating_parameter(replace(result, sources=sources), claim, verdict) == "semi-analytical: domain"

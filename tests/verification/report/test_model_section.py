@@ -11,7 +11,7 @@ from verification.commands.common.known_folders import RECORDS
 from verification.credibility.model_error import LIMIT, Cost, ModelError, judged_quantities
 from verification.evidence.assumption_maps import read_maps
 from verification.report.credibility.model_section import LEVELS, section
-from verification.report.report_material import Evidence, Material
+from verification.report.report_material import Evidence, ReportMaterial
 from verification.report.report_page import render
 
 RESULT = result_of(contact(), points=5)
@@ -88,11 +88,13 @@ def test_only_judged_quantities_are_warned_of():
 def test_page_of_a_case_states_the_error_of_the_model(maps):
     model = model_of(0.1)
     beyond = {RESULT.name: warnings_of(model)}
-    page = render(Material([RESULT], INFO, Evidence(maps=maps, models={RESULT.name: model}, beyond=beyond)))
+    page = render(
+        ReportMaterial([RESULT], INFO, Evidence(maps=maps, models={RESULT.name: model}, beyond=beyond))
+    )
     assert "10 %" in page
     assert "<strong>Beyond" in page
     assert page.count('id="model"') == 1
     missing = Evidence(models={RESULT.name: ModelError((), (("small strains", "2 coatings"),))})
-    page = render(Material([RESULT], INFO, missing))
+    page = render(ReportMaterial([RESULT], INFO, missing))
     assert "evaluated" in page
     assert "<strong>Beyond" not in page

@@ -17,7 +17,7 @@ from verification.cases.case_file import shipped_cases
 from verification.judging.verdict import Outcome
 from verification.page.symbol_text import typeset
 from verification.report import report_page as module
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.report_page import render
 from verification.report.sections import first_page
 from verification.report.tables.case_tables import MOST_FAILING
@@ -31,7 +31,7 @@ def results() -> list[CaseResult]:
 
 @pytest.fixture(scope="module")
 def page(results) -> str:
-    return render(Material(results, INFO))
+    return render(ReportMaterial(results, INFO))
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +44,7 @@ def numbers_of(text: str) -> list[int]:
 
 
 def rendered(*results: CaseResult) -> Document:
-    return Document(render(Material(results, INFO)))
+    return Document(render(ReportMaterial(results, INFO)))
 
 
 def test_the_page_needs_nothing_but_itself(page, document):
@@ -91,12 +91,12 @@ def test_many_cases_are_grouped_behind_the_worst():
     one = result_of(contact((2 * STEEL[0], 0.3, 1.0)), points=5)
     several = [replace(one, name=f"case {n}", title=f"Case {n}") for n in range(40)]
     several[33] = crashed(contact(), "dead", "killed after 300 s")
-    chart = first_page.chart(Material(several, INFO))
+    chart = first_page.chart(ReportMaterial(several, INFO))
     assert len(chart["rows"]) == first_page.OWN_ROWS + 1
     assert chart["rows"][0]["title"] == "Dead"
     assert chart["rows"][-1]["title"].startswith(f"{40 - first_page.OWN_ROWS} more")
-    assert first_page.chart(Material(several[:3], INFO))["grouped"] == 0
-    shipped = first_page.chart(Material(several[: len(shipped_cases())], INFO))
+    assert first_page.chart(ReportMaterial(several[:3], INFO))["grouped"] == 0
+    shipped = first_page.chart(ReportMaterial(several[: len(shipped_cases())], INFO))
     assert len(shipped["rows"]) < first_page.MOST_ROWS
 
 
@@ -106,7 +106,7 @@ def test_words_from_strangers_stay_words():
     failed = {"fem_reference": evil}
     result = result_of(contact(), name=evil, title=evil, failures=failed, text=text, points=5)
     info = RunInfo(evil, evil, 1.0, 1, evil, evil, {evil: evil})
-    document = Document(render(Material([result], info)))
+    document = Document(render(ReportMaterial([result], info)))
     assert len(document.all("script")) == 1
     assert all(image["src"].startswith("data:image/") for image in document.all("img"))  # figures alone
     assert not any(name.startswith("on") for _, attributes in document.elements for name in attributes)
@@ -116,9 +116,9 @@ def test_words_from_strangers_stay_words():
 
 def test_pages_of_many_cases_are_compressed_and_come_out_whole(monkeypatch):
     several = [result_of(contact(), name=name, points=11) for name in ("one", "two")]
-    plain = render(Material(several, INFO))
+    plain = render(ReportMaterial(several, INFO))
     monkeypatch.setattr(module, "MOST_UNPACKED", 1)
-    small = render(Material(several, INFO))
+    small = render(ReportMaterial(several, INFO))
     assert small.count('<div class="packed"') == 2
     assert len(small) < 0.85 * len(plain)
     packed = re.compile(
@@ -158,7 +158,7 @@ def test_every_figure_says_what_it_shows_and_carries_its_numbers(document, resul
     lines = {a["data-of"] for a in document.all("a") if "data-csv" in a and "data-of" in a}
     assert {a["data-line"] for a in figures if "data-line" in a} <= lines
     tables = [a for a in document.all("a") if "data-csv" in a]
-    assert len(tables) > sum(len({p.line for p in r.profiles}) for r in results)
+    assert len(tables) == sum(len({p.line for p in r.profiles}) for r in results)
     for link in tables:
         kind, _, packed = link["href"].partition(",")
         assert kind == "data:application/gzip;base64"

@@ -7,7 +7,7 @@ import pytest
 from synthetic_results import INFO, STEEL, contact, result_of
 
 from verification.report.figures.field_pictures import THINNEST, Frame, pictures, plane_difference, rasterised
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.report_page import render
 from verification.sampling.stress_plane import StressPlane, sample_plane
 from verification.sources.references.hertz import Hertz
@@ -59,7 +59,7 @@ def test_a_field_that_is_not_finite_still_gives_a_page(plane, bad):
     sigma = plane.stress["fem_reference"][0].copy()
     sigma[:, 3, 3] = bad
     spoiled = replace(plane, stress=plane.stress | {"fem_reference": (sigma,)})
-    text = render(Material([RESULT], INFO, planes={"bare": spoiled}))
+    text = render(ReportMaterial([RESULT], INFO, planes={"bare": spoiled}))
     assert 'class="figure field"' in text
 
 
@@ -69,6 +69,6 @@ def test_a_method_without_a_picture_is_said_and_no_plane_is_no_picture(plane):
     found = pictures(alone, *SCALES)
     assert len(found["panels"]) == 3
     assert plane_difference(alone, 1.0) is None
-    assert "No picture by semi-analytical" in render(Material([RESULT], INFO, planes={"bare": alone}))
+    assert "No picture by semi-analytical" in render(ReportMaterial([RESULT], INFO, planes={"bare": alone}))
     assert pictures(None, *SCALES) is None
     assert pictures(StressPlane(np.zeros(0), (), 0.0, {}, {}), *SCALES) is None

@@ -9,7 +9,7 @@ import pytest
 from quick_case import coatcheck
 
 from verification.cases.published_file import published_cases, read_published
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.report_page import render
 from verification.running.case_result import RunInfo, from_json
 from verification.running.checked_files import read_checked
@@ -32,7 +32,7 @@ def results():
 
 @pytest.fixture(scope="module")
 def page(results):
-    return render(Material(results, INFO))
+    return render(ReportMaterial(results, INFO))
 
 
 def rows_of(page, anchor):
@@ -84,13 +84,13 @@ def test_a_value_that_is_not_met_is_marked(results):
     wrong = results[1]
     factors = {"fem_reference": 1.001}
     profiles = tuple(replace(p, value=p.value * factors.get(p.source, 1)) for p in wrong.profiles)
-    rows = rows_of(render(Material([replace(wrong, profiles=profiles)], INFO)), "jones-1962")
+    rows = rows_of(render(ReportMaterial([replace(wrong, profiles=profiles)], INFO)), "jones-1962")
     assert sum(row.endswith("✗") for row in rows) == 2
 
 
 def test_a_failed_source_still_has_its_page():
     case = read_published(SHIPPED["jones_1962"])
-    page = render(Material([failed(case, "its process <died>", 1.0)], INFO))
+    page = render(ReportMaterial([failed(case, "its process <died>", 1.0)], INFO))
     assert "process" in page
     assert "0 of 2" in page
 

@@ -10,7 +10,7 @@ from verification.commands.common.known_folders import RECORDS
 from verification.credibility.self_tests import SelfTest
 from verification.judging.invariants import Invariant
 from verification.judging.verdict import Outcome
-from verification.report.report_material import Material, gather
+from verification.report.report_material import ReportMaterial, gather
 from verification.report.report_page import write_report
 
 LAW = Invariant("load balance", "semianalytic", 1e-7, 1e-5, Outcome.AGREES, "int p dA = W: off by 1e-07")
@@ -25,7 +25,7 @@ def folder(tmp_path_factory):
         )
         for k, f in ((2, 0.25), (4, 0.0))
     ]
-    material = Material(results, INFO)
+    material = ReportMaterial(results, INFO)
     tests = (SelfTest("reader", "reads", True, "1 answer"),)
     evidence = gather(RECORDS, material.modelled, tests)
     made = tmp_path_factory.mktemp("report")

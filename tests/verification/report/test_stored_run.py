@@ -13,7 +13,7 @@ from verification.credibility.self_tests import SelfTest
 from verification.evidence.alarm_record import write_record
 from verification.regression.baseline_change import regression, updated
 from verification.regression.junit_xml import junit_xml
-from verification.report.report_material import Material, gather, stored_material
+from verification.report.report_material import ReportMaterial, gather, stored_material
 from verification.report.report_page import write_report
 from verification.report.sections.case_page import rerun_command
 from verification.running.case_result import to_json
@@ -48,7 +48,7 @@ def run(tmp_path):
     # As a run has them: each result read back from its file, in the order of the command.
     results = material.results[::-1]
     junit = junit_xml(results, INFO, evidence.baseline, {"reader": ""})
-    write_report(Material(results, INFO, evidence, material.planes), folder, junit)
+    write_report(ReportMaterial(results, INFO, evidence, material.planes), folder, junit)
     return folder
 
 

@@ -205,40 +205,26 @@ def test_texts_of_ticks_never_print_over_each_other():
 
 def test_figures_are_drawn_in_the_scales_of_the_bare_substrate(monkeypatch):
     drawn = []
-
-    def record(curves, differences, **more):
-        drawn.append((curves, differences, more))
-        return Markup("")
-
-    monkeypatch.setattr(line_panels, "draw_curves", record)
+    monkeypatch.setattr(
+        line_panels, "draw_curves", lambda *of, **more: drawn.append((*of, more)) or Markup("")
+    )
     result = result_of(COATED, errors={"semianalytic": 2e-3}, stated={"semianalytic": 0.7}, points=201)
-    case_figures(result)
+    zoned = replace(result, verdicts=tuple((replace(c, edge=0.05), v) for c, v in result.verdicts))
+    case_figures(zoned)
     curves, differences, more = next(one for one in drawn if 'data-quantity="pressure"' in one[2]["data"])
     assert len(curves) == len(differences) == 3
     for curve in curves:
         assert (curve.position.min(), curve.position.max()) == pytest.approx((-2, 2), rel=1e-12)
         assert curve.value.max() == pytest.approx(1, abs=5e-3)
-    ours, theirs = (
-        result.profile_of["pressure", "surface", s] for s in ("semianalytic", "integral_equation")
-    )
     error = next(d for d in differences if d.style == pair_style(("semianalytic", "integral_equation")))
-    # The divisor of the verdicts: the smaller of p_h and the reference's p0, off by parts of 1e-10 here.
-    p0 = result.profile_of["peak_pressure", "contact", "integral_equation"].value[0]
-    scale = min(COATED.p_h, p0)
-    assert error.value == pytest.approx(np.abs(ours.value - theirs.value) / scale, rel=1e-12, abs=0)
     assert error.uncertainty == pytest.approx(0.7 * 2e-3, rel=1e-3)
     verdict = next(
         v for c, v in result.verdicts if (c.quantity, c.between[1]) == ("pressure", "integral_equation")
     )
+    assert error.value.max() == pytest.approx(verdict.difference, rel=1e-9)
     assert error.worst == verdict.worst / COATED.a_h
-    assert more["cap"] == 1e-3
-    assert more["coordinate"] == "x / a_h"
-    assert more["unjudged"] == []
-    zoned = replace(result, verdicts=tuple((replace(c, edge=0.05), v) for c, v in result.verdicts))
-    drawn.clear()
-    case_figures(zoned)
-    zones = np.array(drawn[0][2]["unjudged"])
-    assert zones == pytest.approx(np.array([(-1.05, -0.95), (0.95, 1.05)]), rel=1e-6)
+    assert (more["cap"], more["coordinate"]) == (1e-3, "x / a_h")
+    assert np.array(more["unjudged"]) == pytest.approx(np.array([(-1.05, -0.95), (0.95, 1.05)]), rel=1e-6)
 
 
 def test_what_fails_is_drawn_first_and_the_rest_is_what_one_looks_at():

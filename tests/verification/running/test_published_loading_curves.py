@@ -7,7 +7,7 @@ from html_document import Document
 from verification.cases.published_file import published_cases, read_published
 from verification.judging.verdict import Outcome
 from verification.problem.loading_curve import LoadingCurve
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.report_page import render
 from verification.running.case_result import RunInfo, from_json, to_json
 from verification.running.published_run import run
@@ -80,7 +80,7 @@ def test_every_value_is_judged_and_departures_are_shown(files):
     assert judged["s"] is Outcome.AGREES
     assert judged["old"] is Outcome.AGREES
     assert from_json(to_json(result)).problem["control"] == "contact_radius"
-    page = render(Material([result], INFO))
+    page = render(ReportMaterial([result], INFO))
     assert "Departures" in page
     assert "stiffness" in " ".join(Document(page).whole("figcaption"))
     wrong = run(files(csv=CSV.replace("2.483525", "2.483535")), exact)

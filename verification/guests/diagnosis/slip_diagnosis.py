@@ -28,13 +28,14 @@ from verification.guests.diagnosis.wrong_outputs import (
 from verification.guests.exam_subjects import SPHERE, Subject, exact_radius, reference_of
 from verification.judging.verdict import Outcome
 from verification.problem.array_types import Array
-from verification.problem.quantity import SCALARS, unit_of
+from verification.problem.quantity import SCALARS, STRESSES, unit_of
 from verification.running.case_result import CaseResult
 
 EDGE = 0.08  # half-width of the zone around the contact edge where nothing is compared, of a
 PRICE = 2.0  # of a slip, in the sum of log misfits
 FLOOR = 1e-4  # smallest misfit that counts
 MOST, BEAM = 4, 6  # slips in a set, sets that are extended
+PART = 0.1  # of the largest stress on a line
 EXPLAINED = 0.1  # of its misfit may remain at a place
 SHARE = 0.9  # of the failed comparisons that has to be explained
 ALIKE = 0.06  # mean misfit in ln of the contact's numbers, within which another problem is looked at
@@ -161,7 +162,7 @@ class Diagnosis:
     def _misfits(self, slips: list[Slip], chosen: tuple[int, ...]) -> dict[Key, float | None]:
         """The misfit at each place if the slips ``chosen`` were made; None where they do not say."""
         values = self._values(slips, chosen)
-        return {k: self._misfit(k, g, values[k]) for k, g in self.given.items()}
+        return {k: self._misfit(k, values) for k in self.given}
 
     @cached_property
     def _made(self) -> dict[tuple[Slip, ...], Values]:
@@ -188,12 +189,19 @@ class Diagnosis:
             found = {}
         return {k: found.get(k, np.full_like(v, np.nan)) for k, v in self.exact.items()}
 
-    def _misfit(self, key: Key, g: Array, p: Array) -> float | None:
-        """|g - p| over the largest of g, p and the exact value, off the edge; None where few are known."""
+    def _misfit(self, key: Key, values: Values) -> float | None:
+        """|g - p| over the larger of both, off the edge; None where few are known.
+
+        Of a stress over a part of the largest one on its line at least, since a slip may leave it zero.
+        """
+        g, p = self.given[key], values[key]
         keep = np.isfinite(p) & self._judged.get(key[1], True)
         if 2 * keep.sum() < g.size / 2 or not keep.any():
             return None
-        size = max(float(np.linalg.norm(one[keep])) for one in (g, p, self.exact[key]))
+        size = max(float(np.linalg.norm(one[keep])) for one in (g, p))
+        if key[0] in STRESSES:
+            beside = (values[q, key[1]] for q in STRESSES if (q, key[1]) in values)
+            size = max([size, *(PART * float(np.linalg.norm(np.nan_to_num(one[keep]))) for one in beside)])
         return float(np.linalg.norm((g - p)[keep])) / size if size else 0.0
 
     @cached_property
@@ -208,12 +216,13 @@ class Diagnosis:
         total = 0.0
         for key, misfit in misfits.items():
             floor = max(FLOOR, self.caps.get(key, 0.0) / 3)
-            total += log(max(self._before[key] if misfit is None else misfit, floor))
+            # An opposite sign is no worse than nothing: it is the next slip to find.
+            total += log(min(max(self._before[key] if misfit is None else misfit, floor), 1.0))
         return total
 
     @cached_property
     def _before(self) -> dict[Key, float]:
-        return {k: self._misfit(k, g, self.exact[k]) or 0.0 for k, g in self.given.items()}
+        return {k: self._misfit(k, self.exact) or 0.0 for k in self.given}
 
     def _right(self, key: Key, misfit: float | None) -> bool:
         """Whether a misfit that is left is no error, or a small part of what there was."""

@@ -21,6 +21,8 @@ STEP = 1e-3
 # What an evaluation leaves of a displacement in a layer: of the approach, and in the outermost coating of the
 # deflection of a half-space of its material, of which a film is what the layers below take away.
 EVALUATED = 2e-8
+# What it leaves of a displacement at one place, of the approach; places above each other share it.
+AT_ONE_PLACE = 3e-9
 
 
 def bonded_traction(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
@@ -63,8 +65,9 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
 def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, stencil: Stencil) -> Invariant:
     """E eps_ij = (1 + nu) sigma_ij - nu sigma_kk delta_ij in ``layer``, strains by differences of u.
 
-    Bounded by the error of the differences and of the evaluation of displacements, plus twice the uncertainty
-    of the stresses, once for the stresses and once, over E, for the strains.
+    Bounded by the error of the differences and of the evaluation of displacements, which differs between
+    places beside each other, plus twice the uncertainty of the stresses, once for the stresses and once,
+    over E, for the strains.
     """
     x, y, z = stencil.points
     E, nu = ([c[:2] for c in problem.coatings] + [problem.substrate])[layer]
@@ -77,8 +80,9 @@ def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, s
     residual = E * strain - (1 + nu) * sigma + nu * unit * np.trace(sigma)
     bound = None
     if U is not None:
+        left = stencil.propagated(np.full(u.shape, AT_ONE_PLACE * solution.approach))[:2].max(axis=(0, 1))
         # the estimate of a single component may vanish by chance
-        error = error.max(axis=(0, 1)) + EVALUATED * solution.approach / solution.contact_radius
+        error = error.max(axis=(0, 1)) + left
         bound = (E * error + 2 * (1 + nu) * U + 2 * abs(nu) * unit * np.trace(U)) / problem.p_h
     name = layer_name(layer, problem)
     law = f"E eps = (1 + nu) sigma - nu tr sigma in {name}, over p_h"

@@ -205,11 +205,10 @@ addEventListener("DOMContentLoaded", () => {
     svg.addEventListener("pointermove", (event) => {
       const found = under(svg, event);
       if (!found) return svg.dispatchEvent(new Event("pointerleave"));
-      const [q, l, p, difference, U, cap, outcome, part] = found.row;
+      const [q, l, p, difference, U, cap, outcome] = found.row;
       const line = data.lines[l] === "contact" ? "" : `, ${escaped(data.lines[l])}`;
       tell(event, `<b>${data.quantities[q][1]}</b>${line}<br>${pairOf(p)}<br>|A \u2212 B| ${power(difference)}` +
-        `<br>U ${U === null ? "not stated" : power(U)}, cap ${power(cap)}<br>${data.outcomes[outcome]}` +
-        (data.parts[part] ? `<br><small>largest part of U: ${escaped(data.parts[part])}</small>` : ""));
+        `<br>U ${U === null ? "not stated" : power(U)}, cap ${power(cap)}<br>${data.outcomes[outcome]}`);
       ring.setAttribute("cx", found.x);
       ring.setAttribute("cy", found.y);
       svg.append(ring);
@@ -304,7 +303,7 @@ addEventListener("DOMContentLoaded", () => {
       }
       const cells = (row) => (row
         ? `<td class="num ${row[6] === data.agrees ? "" : "bad"}">${row[6] === data.agrees ? "" : data.outcomes[row[6]][0]} ${power(row[3])}</td>` +
-          `<td class="num" title="${escaped(data.parts[row[7]] ?? "")}">${row[4] === null ? "not stated" : power(row[4])}</td>`
+          `<td class="num">${row[4] === null ? "not stated" : power(row[4])}</td>`
         : "<td></td><td></td>");
       const body = [...places.values()].sort((one, other) => one[0][1] - other[0][1] || one[0][0] - other[0][0]).map((some) =>
         `<tr><th scope="row">${data.quantities[some[0][0]][1]}</th><td>${escaped(data.lines[some[0][1]])}</td><td class="num">${power(some[0][5])}</td>` +

@@ -27,7 +27,7 @@ from verification.page.page_parts import (
 )
 from verification.page.plots import draw_histogram
 from verification.page.source_labels import pair_label, source_label
-from verification.report.report_material import Evidence, Material
+from verification.report.report_material import Evidence, ReportMaterial
 from verification.report.report_words import stated
 from verification.report.tables.case_lookup import layers, scale
 from verification.running.case_result import CaseResult
@@ -36,7 +36,7 @@ MOST = 30
 NO_RECORD = "Not measured: there is no record of {}; make one in a checkout with: {} --record"
 
 
-def section(material: Material, coverage: Table) -> Section | None:
+def section(material: ReportMaterial, coverage: Table) -> Section | None:
     """Evidence from the intended use to the false alarms; None where no evidence was collected.
 
     coverage : as ``coverage_table``.
@@ -174,7 +174,7 @@ def _when(evidence: Evidence, name: str) -> str:
 
 
 def _enclosed(evidence: Evidence) -> str:
-    """What is proven of the exact reference, with what this run found of it."""
+    """Proven bounds on the exact reference, with what this run found of it."""
     record = evidence.enclosures
     if record is None:
         return NO_RECORD.format("enclosures", "python tests/tools certify")

@@ -1,4 +1,4 @@
-"""What the checks detect: planted faults, self-tests of the harness."""
+"""Sections on what the checks detect: planted faults, self-tests of the harness."""
 
 from collections import Counter
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Where the model ends: what each assumption that all sources share costs, and up to where."""
+"""Section on where the model ends: what each assumption that all sources share costs, and up to where."""
 
 from collections.abc import Sequence
 from functools import partial
@@ -56,7 +56,7 @@ def _driver(one: AssumptionMap) -> str:
 
 
 def _reaches(maps: Sequence[AssumptionMap]) -> Table:
-    """Where each quantity reaches the levels, an assumption below the other."""
+    """Places at which each quantity reaches the levels, an assumption below the other."""
     names = list(dict.fromkeys(one.quantities[i] for one in maps for i in _measured(one)))
     rows = []
     for one in maps:

@@ -78,7 +78,7 @@ class Frame:
 
     @property
     def shares(self) -> list[float]:
-        """Where the edges are drawn, as a share of the height."""
+        """Places of the edges in the drawing, as a share of the height."""
         parts = np.diff(self.edges) / self.depth
         thin = parts < THINNEST
         rest = 1 - THINNEST * thin.sum()
@@ -93,7 +93,7 @@ class Frame:
         return bool(np.abs(np.array(self.shares) - np.array(self.edges) / self.depth).max() > 1e-9)
 
     def place(self, z: float) -> float:
-        """Where the depth ``z`` is drawn, as a share of the height."""
+        """Place of the depth ``z`` in the drawing, as a share of the height."""
         return float(np.interp(z, self.edges, self.shares))
 
     @property
@@ -103,7 +103,7 @@ class Frame:
 
     @property
     def height(self) -> float:
-        """Of the raster, in units of the drawing."""
+        """Height of the raster, in units of the drawing."""
         return WIDTH * self.depth / (2 * self.half)
 
 

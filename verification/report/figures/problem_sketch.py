@@ -67,7 +67,7 @@ def sketch(problem: Mapping[str, Any], a: float | None) -> Markup:
 
 
 def _ball(problem: Mapping[str, Any]) -> tuple[str, str]:
-    """What the sphere or other indenter is, in two lines."""
+    """The sphere or other indenter in two lines."""
     found = layers(problem, BALL)
     if indenter := problem.get("indenter"):
         return f"rigid {INDENTERS[indenter[0]]}, its", "radius not to scale"

@@ -54,7 +54,7 @@ class Axis:
     high: int
 
     def place(self, value: float) -> float:
-        """Where ``value`` is drawn, in units of the drawing; within the strip."""
+        """Place of ``value`` in the strip, in units of the drawing."""
         exponent = log10(value) if value > 0 else self.low
         return WIDTH * min(max((exponent - self.low) / (self.high - self.low), 0.0), 1.0)
 

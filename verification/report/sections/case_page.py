@@ -4,21 +4,18 @@ import shlex
 from pathlib import PurePath
 from typing import Any
 
-import numpy as np
-
 from verification.cases.case_file import default_cases
 from verification.cases.published_file import published_cases
-from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.judging.verdict import Outcome
 from verification.page.number_text import scientific
 from verification.page.source_labels import OUTCOMES, pair_style, source_label, source_style, symbol_of
 from verification.page.symbol_text import typeset
 from verification.problem.point_answers import BALL
-from verification.problem.quantity import QUANTITIES
 from verification.report.figures.field_pictures import pictures
 from verification.report.figures.line_panels import case_figures
 from verification.report.figures.problem_sketch import sketch
 from verification.report.figures.verdict_strips import case_strips, items_of, ordered
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.sections import invariants_section, published_section
 from verification.report.tables.case_lookup import contact_radius, divisor, layers, scale, slug
 from verification.report.tables.case_tables import (
@@ -35,8 +32,8 @@ from verification.report.tables.line_csv import line_csv
 from verification.running.case_result import CaseResult
 
 
-def contents(material: Material, result: CaseResult, anchor: str) -> dict[str, Any]:
-    """What the template of a case shows under its ``anchor``."""
+def contents(material: ReportMaterial, result: CaseResult, anchor: str) -> dict[str, Any]:
+    """Content of the template of a case under its ``anchor``."""
     problem, verdicts, file = result.problem, result.verdicts, slug(result.name)
     a_h, p_h = scale(problem, "a_h"), scale(problem, "p_h")
     radius, ball = contact_radius(result), layers(problem, BALL)
@@ -116,12 +113,11 @@ def summary(result: CaseResult) -> str:
     return f"{text}." if total else "No comparison was possible."
 
 
-def data(material: Material) -> dict[str, Any]:
-    """What the script of the page knows of the comparisons: names once, then rows of indices and numbers."""
+def data(material: ReportMaterial) -> dict[str, Any]:
+    """The comparisons as the script of the page reads them: names once, then rows of indices and numbers."""
     quantities: dict[str, int] = {}
     lines: dict[str, int] = {}
     pairs: dict[tuple[str, str], int] = {}
-    parts: dict[str, int] = {}
     cases = {}
     for result in material.contacts:
         rows = [
@@ -133,7 +129,6 @@ def data(material: Material) -> dict[str, Any]:
                 _short(item.uncertainty),
                 item.claim.cap,
                 list(OUTCOMES).index(item.verdict.outcome),
-                parts.setdefault(dominating_parameter(result, item.claim, item.verdict), len(parts)),
             ]
             for item in ordered(items_of(result.verdicts))
         ]
@@ -150,40 +145,10 @@ def data(material: Material) -> dict[str, Any]:
         "quantities": [[name, typeset(symbol_of(name))] for name in quantities],
         "lines": list(lines),
         "pairs": [[*pair, pair_style(pair).colour] for pair in pairs],
-        "parts": list(parts),
         "agrees": list(OUTCOMES).index(Outcome.AGREES),
         "outcomes": [f"{style.mark} {style.word}" for style in OUTCOMES.values()],
         "cases": cases,
     }
-
-
-def dominating_parameter(result: CaseResult, claim: Claim, verdict: Verdict) -> str:
-    """The source with the larger uncertainty at the deciding point, with its dominating parameter.
-
-    U of a stress or pressure is that of p0, of a displacement or the stiffness that of the approach, with its
-    own part due to the first parameter, the edge terms or the size of patches or elements: the excess of U
-    over the other parts belongs to the first.
-    """
-    sides = []
-    for source in claim.between:
-        profile = result.profile_of.get((claim.quantity, claim.line, source))
-        if profile is not None and profile.uncertainty is not None and profile.position.size:
-            at = 0 if verdict.worst is None else int(np.argmin(np.abs(profile.position - verdict.worst)))
-            sides.append((float(profile.uncertainty[at]), source))
-    if not sides or not max(sides)[0] > 0:
-        return ""
-    U, source = max(sides)
-    budget = next((s.budget for s in result.sources if s.source == source), ())
-    scalar_claim = any(q == claim.quantity for q, _, _ in budget)
-    like = "approach" if QUANTITIES[claim.quantity].kind in ("slope", "displacement") else "peak_pressure"
-    quantity = claim.quantity if scalar_claim else like
-    parts = [(name, value) for q, name, value in budget if q == quantity]
-    if not parts:
-        return source_label(source)
-    if not scalar_claim:
-        others = sum(value for _, value in parts[1:])
-        parts[0] = (parts[0][0], max(U - others, 0.0))
-    return f"{source_label(source)}: {max(parts, key=lambda item: item[1])[0]}"
 
 
 def _short(value: float | None, digits: int = 3) -> float | None:

@@ -22,7 +22,7 @@ from verification.regression.baseline_change import State, baseline_message
 from verification.regression.manifest import manifest_message
 from verification.report.figures.field_pictures import plane_difference
 from verification.report.figures.verdict_strips import Axis, axis_of, draw_axis, draw_strip, items_of, worst
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.sections.accuracy_section import accuracies
 from verification.report.tables.case_lookup import divisor, layers
 from verification.running.case_result import CaseResult
@@ -52,8 +52,8 @@ class Worth:
     older: bool = False
 
 
-def contents(material: Material) -> dict[str, Any]:
-    """What the template of the first page shows."""
+def contents(material: ReportMaterial) -> dict[str, Any]:
+    """Content of the template of the first page."""
     return {
         "asked": _asked(material),
         "headline": _headline(material),
@@ -73,7 +73,7 @@ def contents(material: Material) -> dict[str, Any]:
     }
 
 
-def _answered(material: Material) -> list[tuple[str, str]]:
+def _answered(material: ReportMaterial) -> list[tuple[str, str]]:
     """(key of a text in the template, labels) of the sources of the run, in the order of the registry."""
     found = {name for result in material.results for claim, _ in result.verdicts for name in claim.between}
     texts: dict[str, list[str]] = {}
@@ -82,7 +82,7 @@ def _answered(material: Material) -> list[tuple[str, str]]:
     return [(key, ", ".join(labels)) for key, labels in texts.items()]
 
 
-def _headline(material: Material) -> str:
+def _headline(material: ReportMaterial) -> str:
     results = material.results
     if not results:
         return "No case was run."
@@ -95,8 +95,8 @@ def _headline(material: Material) -> str:
     return f"{bad} of {cases} do not agree: {total - agreeing} of {total} comparisons"
 
 
-def _asked(material: Material) -> str:
-    """What was compared, in one sentence."""
+def _asked(material: ReportMaterial) -> str:
+    """The contacts and sources compared, in one sentence."""
     contacts, published = material.contacts, material.published
     texts = [f"{_counted(contacts, 'contact')} with a coated solid"] if contacts else []
     texts += [_counted(published, "published source")] if published else []
@@ -107,7 +107,7 @@ def _counted(results: Sequence[CaseResult], noun: str) -> str:
     return f"{len(results)} {noun}{'' if len(results) == 1 else 's'}"
 
 
-def _largest(material: Material) -> list[str]:
+def _largest(material: ReportMaterial) -> list[str]:
     """The largest difference, that next to edges that are not round, and that in planes, unjudged."""
     found = [
         (item.difference, item.claim, result.title)
@@ -159,7 +159,7 @@ def _scale(claim: Claim) -> str:
     )
 
 
-def chart(material: Material) -> dict[str, Any] | None:
+def chart(material: ReportMaterial) -> dict[str, Any] | None:
     """All comparisons of the run, a row for each strip over one axis; None where there are none."""
     results, anchors = list(material.results), material.anchors
     items = [item for result in results for item in items_of(result.verdicts)]
@@ -211,13 +211,13 @@ def _badness(result: CaseResult) -> tuple[int, float]:
     return OUTCOMES[result.outcome].rank, -largest
 
 
-def _tallies(material: Material) -> list[tuple[OutcomeStyle, int]]:
+def _tallies(material: ReportMaterial) -> list[tuple[OutcomeStyle, int]]:
     """How many comparisons have each verdict, the agreeing ones first."""
     counted = Counter(verdict.outcome for result in material.results for _, verdict in result.verdicts)
     return [(OUTCOMES[o], counted[o]) for o in reversed(OUTCOMES) if counted[o] or o is Outcome.AGREES]
 
 
-def repeated(material: Material) -> set[tuple[str, int]]:
+def repeated(material: ReportMaterial) -> set[tuple[str, int]]:
     """The comparisons (case, number) that repeat those of another case: friction leaves the contact as it is.
 
     They compare the same numbers of a contact, or the pressure, of the same sources with the same result.
@@ -238,8 +238,11 @@ def repeated(material: Material) -> set[tuple[str, int]]:
     return again
 
 
-def agreements(material: Material) -> list[Worth]:
-    """What agrees, between whom, how well; comparisons that repeat another case's are not counted again."""
+def agreements(material: ReportMaterial) -> list[Worth]:
+    """Agreement by what the sources share, and how well they agree.
+
+    Comparisons that repeat another case's are not counted again.
+    """
     again = repeated(material)
     found: dict[Independence, list[Verdict]] = {}
     for result in material.results:
@@ -258,8 +261,8 @@ def agreements(material: Material) -> list[Worth]:
     return rows
 
 
-def shared(material: Material) -> list[tuple[str, str]]:
-    """What both methods have in common, part by part, from the imports and the registry of sources."""
+def shared(material: ReportMaterial) -> list[tuple[str, str]]:
+    """Common parts of both methods, part by part, from the imports and the registry of sources."""
     parts = material.evidence.parts
     if not parts:
         return [("code", "not measured: the source of the packages could not be read")]
@@ -286,7 +289,7 @@ def shared(material: Material) -> list[tuple[str, str]]:
     ]
 
 
-def model_costs(material: Material) -> list[Worth]:
+def model_costs(material: ReportMaterial) -> list[Worth]:
     """The largest cost of each assumption among the cases of the run, as far as it is known."""
     rows = []
     titles = {result.name: result for result in material.contacts}
@@ -298,13 +301,12 @@ def model_costs(material: Material) -> list[Worth]:
         ]
         if found:
             cost, result = max(found, key=lambda one: one[0].size)
-            words = f"{cost.percent} of the {cost.name}"
-            rows.append(Worth(title, words, f"#{material.anchors[result]}", None, result.title))
+            rows.append(Worth(title, cost.words, f"#{material.anchors[result]}", None, result.title))
     return rows
 
 
-def _unverified(material: Material) -> list[str]:
-    """What no comparison of the run reaches, a line each."""
+def _unverified(material: ReportMaterial) -> list[str]:
+    """Problems that no comparison of the run reaches, a line each."""
     most = max((len(layers(result.problem)) - 1 for result in material.contacts), default=0)
     texts = [
         f"More than {max(most, MOST_COATINGS)} coatings, and what lies outside the ranges of the problems "
@@ -321,8 +323,8 @@ def _unverified(material: Material) -> list[str]:
     return texts
 
 
-def worth(material: Material) -> list[Worth]:
-    """What is known about the verdicts besides the comparisons: each figure with the page it is on."""
+def worth(material: ReportMaterial) -> list[Worth]:
+    """Evidence on the verdicts besides the comparisons: each figure with the page it is on."""
     evidence, found = material.evidence, list[Worth]()
 
     def share(name: str, held: Sequence[bool], href: str, note: str = "") -> None:
@@ -346,9 +348,9 @@ def worth(material: Material) -> list[Worth]:
         recorded("random problems with a false alarm", wrong, alarms.problems, "#alarms", alarms, note)
     if faults := evidence.faults:
         for place, rows in by_place(faults).items():
-            # the harness judges: its faults show in its self-tests and in the manifest, not in a comparison
+            # what judges a method shows in self-tests, published tables and the manifest, too
             caught = sum(row.caught for row in rows), len(rows)
-            good, total = caught if place == "harness" else score(rows)
+            good, total = caught if place in ("harness", "references") else score(rows)
             if total:
                 recorded(f"faults planted in the {place} noticed", good, total, "#faults", faults)
         silent = [row not in faults.alarms for row in faults.controls]
@@ -386,8 +388,8 @@ def _share(held: Sequence[bool]) -> str:
     return f"all {len(held)}" if all(held) else f"{sum(held)} of {len(held)}"
 
 
-def _alarms(material: Material) -> list[str]:
-    """What fails although every verdict may agree: self-tests, the manifest, the baseline."""
+def _alarms(material: ReportMaterial) -> list[str]:
+    """Failures although every verdict may agree: self-tests, the manifest, the baseline."""
     failed = [test.name for test in material.evidence.self_tests if not test.passed]
     messages = [f"self-tests of the harness: {', '.join(failed)}"] if failed else []
     found = material.evidence.baseline

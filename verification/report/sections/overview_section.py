@@ -4,11 +4,11 @@ from verification.judging.verdict import Outcome
 from verification.page.page_parts import Cell, Part, Section, Table, number, outcome_cell, row, tally
 from verification.page.source_labels import symbol_of
 from verification.regression.baseline_section import state_cell
-from verification.report.report_material import Material
+from verification.report.report_material import ReportMaterial
 from verification.report.tables.case_lookup import case_cell
 
 
-def section(material: Material) -> Section | None:
+def section(material: ReportMaterial) -> Section | None:
     """Every case with its verdicts and its largest difference; None without a case."""
     results = material.results
     if not results:
