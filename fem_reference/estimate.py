@@ -30,7 +30,7 @@ from fem_reference.comparison_points import ComparisonPoints, largest_around, li
 from fem_reference.contact.fixed_radius import FixedRadiusContact
 from fem_reference.elasticity.recovery import TRACTIONS, HarmonicField
 from fem_reference.elasticity.state import ElasticState
-from fem_reference.element_answer import Uncertainty as Uncertainty
+from fem_reference.element_answer import Uncertainty
 from fem_reference.meshing.location import LocatedPoints, Uncached
 from fem_reference.scaling import Units
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from fem_reference import element_numbers as chosen
 from fem_reference.elasticity.state import ElasticState
-from fem_reference.element_answer import ElementAnswer, PlainFields
-from fem_reference.estimate import Estimates, Uncertainty
+from fem_reference.element_answer import ElementAnswer, PlainFields, Uncertainty
+from fem_reference.estimate import Estimates
 from fem_reference.meshing.location import SolidPoints, solid_points
 from fem_reference.scaling import Units
 from fem_reference.validation import check_friction

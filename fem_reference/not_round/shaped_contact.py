@@ -11,8 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from fem_reference.element_answer import ElementAnswer, ElementPoints
-from fem_reference.estimate import Uncertainty
+from fem_reference.element_answer import ElementAnswer, ElementPoints, Uncertainty
 from fem_reference.meshing.mesh import surface_size
 from fem_reference.not_round.gap_closing import ENOUGH, Closed, closed
 from fem_reference.not_round.harmonic_compliance import DENSITY, harmonic_compliance

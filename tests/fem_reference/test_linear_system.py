@@ -69,7 +69,7 @@ def test_one_load_in_single_precision_is_refined_or_solved_in_double(steps, expe
     precisions = []
     factorised = linear_system.factorised
     monkeypatch.setattr(linear_system, "factorised", lambda A: precisions.append(A.dtype) or factorised(A))
-    monkeypatch.setattr(linear_system, "_MOST_STEPS", steps)
+    monkeypatch.setattr(linear_system.chosen, "MOST_STEPS", steps)
     found = constrained_solve(K, given[:, 0], fixed, load[:, 0])
     assert precisions == expected
     np.testing.assert_allclose(found.residual, 0.0, rtol=0, atol=1e-11)

@@ -194,5 +194,5 @@ def before(body: str) -> str:
 
 
 def as_stress(value: float) -> str:
-    """A stress [Pa] in GPa or MPa, three digits."""
-    return f"{value / 1e9:.3g} GPa" if value >= 1e9 else f"{value / 1e6:.3g} MPa"
+    """A stress [Pa] of at least 0 with its prefix, three digits."""
+    return prefixed(value, "Pa", 3) if value else "0 Pa"

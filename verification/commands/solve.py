@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_limits
 
 from verification.cases.case_file import Case, default_cases, parse_case, read_case
 from verification.cases.materials import SHIPPED as SHIPPED_MATERIALS
-from verification.cases.plausibility import beyond_limits, refused
+from verification.cases.plausibility import refused
 from verification.cases.toml_file import NO_SOURCE, load_toml
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.known_folders import require_format
@@ -45,10 +45,10 @@ from verification.desk.contact_answer import (
 from verification.desk.layer_limits import (
     MODES,
     LayerMode,
-    layer_modes,
+    limit_warnings,
+    modes_of,
     place_name,
     strain_warnings,
-    strengths_of,
     unusual,
     verdict,
 )
@@ -138,13 +138,8 @@ def solve(
         with _working("finite elements", as_json):
             second = _answer(case, SECOND)
     with _working("loads at which something fails", as_json or not case.limits):
-        numerics = case.numerics.get(METHOD)
-        modes = layer_modes(
-            case.problem, first, strengths_of(case.limits), numerics, case.residual, case.layers
-        )
-    late = [line for one in modes for line in one.warnings(place_name(case, one))]
-    late += strain_warnings(case, first)
-    late += beyond_limits(first.numbers["peak_pressure"][0], case.limits)
+        modes = modes_of(case, first)
+    late = [*limit_warnings(case, first, modes), *strain_warnings(case, first)]
     print_warnings(late, case.name, strict=strict, silent=as_json)
     with _working("error of the model", as_json):
         beyond = model_error(case.problem)

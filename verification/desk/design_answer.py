@@ -8,7 +8,7 @@ from pathlib import Path
 
 from verification.cases.case_file import Case
 from verification.desk.contact_answer import ContactAnswer, answer, summary
-from verification.desk.layer_limits import LayerMode, layer_modes, place_name, strengths_of, verdict
+from verification.desk.layer_limits import LayerMode, modes_of, place_name, verdict
 from verification.desk.stack_text import conditions, stack, units_of
 from verification.sources.source_registry import METHODS
 
@@ -68,6 +68,4 @@ def design_answer(case: Case) -> DesignAnswer:
     """The answer of ``coatcheck solve`` to a ``case``. Raises what the semi-analytical method raises."""
     numerics = case.numerics.get(METHODS[0])
     found = answer(case.problem, METHODS[0], numerics, case.residual, case.layers)
-    strengths = strengths_of(case.limits)
-    modes = layer_modes(case.problem, found, strengths, numerics, case.residual, case.layers)
-    return DesignAnswer(case, found, modes)
+    return DesignAnswer(case, found, modes_of(case, found))

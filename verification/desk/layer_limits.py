@@ -24,9 +24,7 @@ from verification.problem.point_answers import BALL, FLAT
 
 NEAR = 2e-3  # of the strength: a load as near as this is found, and interpolated from there
 MOST_SOLVES, FARTHEST = 8, 1e4  # of one mode; factor of the load between two of them
-UNUSUAL = (
-    0.03  # von Mises stress over the modulus, which few materials bear; hardened steels yield below 0.015
-)
+UNUSUAL = 0.03  # von Mises stress over the modulus that few materials bear; hardened steels yield below 0.015
 # What each stress does, by which strength it is judged, and its own name.
 MODES = {
     "von_mises": ("yields", "yield_strength", "von Mises stress"),
@@ -110,13 +108,23 @@ def designed(case: Case, source: str) -> Designed | None:
         return None
     if case.problem.indenter is not None:
         return Designed("Largest stresses with residual stress, and strengths, are found under balls alone.")
-    numerics = case.numerics.get(source)
-    first = answer(case.problem, source, numerics, case.residual, case.layers)
-    modes = layer_modes(case.problem, first, strengths_of(case.limits), numerics, case.residual, case.layers)
-    told = [line for one in modes for line in one.warnings(place_name(case, one))]
-    told += beyond_limits(first.numbers["peak_pressure"][0], case.limits)
+    first = answer(case.problem, source, case.numerics.get(source), case.residual, case.layers)
+    modes = modes_of(case, first)
+    told = limit_warnings(case, first, modes)
     said = " ".join(filter(None, (summary(case.problem, first, case.names), verdict(case, modes))))
-    return Designed(said, first.extremes, modes, tuple(told))
+    return Designed(said, first.extremes, modes, told)
+
+
+def modes_of(case: Case, found: ContactAnswer) -> tuple[LayerMode, ...]:
+    """Every mode of ``found``, the answer to ``case``, that has a strength, with the load it begins at."""
+    numerics = case.numerics.get(found.source)
+    return layer_modes(case.problem, found, strengths_of(case.limits), numerics, case.residual, case.layers)
+
+
+def limit_warnings(case: Case, found: ContactAnswer, modes: tuple[LayerMode, ...]) -> tuple[str, ...]:
+    """A line for each strength and limit of the pressure that ``found`` exceeds."""
+    failing = (line for one in modes for line in one.warnings(place_name(case, one)))
+    return (*failing, *beyond_limits(found.numbers["peak_pressure"][0], case.limits))
 
 
 def place_name(case: Case, at: LayerMode | Extreme) -> str:

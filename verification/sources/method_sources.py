@@ -28,7 +28,7 @@ def solve_semianalytic(problem: Problem, numerics: Mapping[str, Any] | None = No
 
 def solve_elements(problem: Problem, numerics: Mapping[str, Any] | None = None) -> Any:
     """``problem`` by finite elements, extrapolated where a layer is incompressible."""
-    from verification.sources.limit_extrapolation import extrapolated
+    from verification.sources.limit_extrapolation import extrapolated, short_of_limit
 
     if isinstance(problem, CoatedContact) and problem.indenter is not None:
         return _elements(numerics or {}, problem)
@@ -36,7 +36,10 @@ def solve_elements(problem: Problem, numerics: Mapping[str, Any] | None = None) 
         from verification.sources.loading_solution import loading
 
         return loading(problem, partial(_elements, {"size": CURVE_SIZE, **(numerics or {})}), limits=True)
-    return extrapolated(problem, partial(_elements, numerics or {}))
+    given = dict(numerics or {})
+    if isinstance(problem, PrescribedLoad) and short_of_limit(problem, 1) != problem:
+        given = {"quality": "fine"} | given  # the extrapolation adds up the uncertainties of its solutions
+    return extrapolated(problem, partial(_elements, given))
 
 
 def _elements(numerics: Mapping[str, Any], problem: CoatedContact | PrescribedLoad) -> Any:

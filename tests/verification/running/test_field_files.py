@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from case_texts import case_text
-from verification.sources.references.hamilton import Hamilton
 
 import fem_reference
 import semianalytic
@@ -12,6 +11,7 @@ from verification.problem.quantity import STRESSES
 from verification.running.checked_files import StoreError
 from verification.running.stored_fields import confirm_fields, write_fields
 from verification.sampling import vtk_files
+from verification.sources.references.hertz import Hertz
 
 pv = pytest.importorskip("pyvista")
 
@@ -76,7 +76,7 @@ def solved(case):
 
 
 def beside(case):
-    one = Hamilton(case.problem.radius, case.problem.load, *case.problem.substrate, case.problem.friction)
+    one = Hertz(case.problem.radius, case.problem.load, *case.problem.substrate, case.problem.friction)
     return SideBySide(one, 1.7 * one.contact_radius)
 
 
