@@ -7,9 +7,11 @@ The part of the gap  u_z + height - delta  inside that functions
 
     s^n T_j(2 s^2 - 1) cos(n tau),   n + 2 j <= degree + 4,
 
-hold is made least in the norm of the weight (1 - s^2)^1.5, which leaves out the edge, where elements are too
-stiff; the pressure is to carry the load. Gauss and Newton's method: the pressure is linear in its
-coefficients, and moving the edge by c_n cos(n tau) changes it by  -dp/ds s^(n + 1) cos(n tau) c_n.
+hold is made least in the norm of the weight (1 - s^2)^2.5, which leaves out the edge, where elements are too
+stiff; the pressure is to carry the load. The root of a pressure misses the displacement by about h^1.5 on a
+width h beside the edge, so that its product with such a condition errs by h^((WEIGHT + 5)/2). Gauss and
+Newton's method: the pressure is linear in its coefficients, and moving the edge by c_n cos(n tau) changes it
+by  -dp/ds s^(n + 1) cos(n tau) c_n.
 """
 
 from dataclasses import dataclass
@@ -23,6 +25,8 @@ from fem_reference.not_round.indenter_height import Height
 from fem_reference.not_round.star_contact import Quadrature, StarPressure
 
 STEPS, ENOUGH, CLOSE = 24, 1e-7, 1e-4  # change of the edge in the last step, and in one that failed
+# Power of the root in the conditions: elements miss int p u dA by h^((WEIGHT + 5)/2) along an edge
+WEIGHT = 5
 MORE, FIRM = 4, 1e3  # degree of the conditions beyond that of the pressure; weight of the load
 # Of the peak, a negative pressure, and of the approach, a penetration: what elements may err by
 ALLOWED = 3e-3
@@ -144,9 +148,9 @@ def closed(
         trial = root * pressure.polynomials(s, at.tau, pressure.degree)
         slope = _slope(pressure, at)
         moved = np.array([-slope * at.s ** _power(n) * np.cos(n * at.tau) for n in pressure.waves])
-        tests = root**3 * pressure.polynomials(s, at.tau, pressure.degree + MORE)
-        # orthonormal for the weight root^3, so that the squares of their products are those of the gap
-        tests = np.linalg.solve(np.linalg.cholesky((tests * at.weights / root**3) @ tests.T), tests)
+        tests = root**WEIGHT * pressure.polynomials(s, at.tau, pressure.degree + MORE)
+        # orthonormal for the weight root^5, so that the squares of their products are those of the gap
+        tests = np.linalg.solve(np.linalg.cholesky((tests * at.weights / root**WEIGHT) @ tests.T), tests)
         forces = np.concatenate([trial, moved, tests]) * at.weights
         n, k = len(trial), len(trial) + len(moved)
         L = one.nodal_loads(at.r, at.theta, forces.reshape(-1, *at.theta.shape), last)

@@ -7,13 +7,15 @@ degree.
 
 import time
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d
 
 from fem_reference.element_answer import ElementAnswer, ElementPoints, Uncertainty
 from fem_reference.meshing.mesh import surface_size
-from fem_reference.not_round.gap_closing import ENOUGH, Closed, closed
+from fem_reference.not_round.gap_closing import ENOUGH, WEIGHT, Closed, closed
 from fem_reference.not_round.harmonic_compliance import DENSITY, harmonic_compliance
 from fem_reference.not_round.indenter_height import Height, Indenter, touching_shape
 from fem_reference.not_round.off_axis import WITHIN, OffAxisFields, PressedSolid, discretised
@@ -28,18 +30,22 @@ from fem_reference.validation import (
 )
 
 MARGIN = 1.04  # of the contact up to the last node below the pressure, and as much before the first
-QUALITIES = {"fast": (0.5, 0.12, 120), "default": (0.44, 0.06, 240), "fine": (0.4, 0.05, 288)}
+# Size of the triangles, of those on the surface, harmonics, degree of the polynomial in the pressure over the
+# number of waves around, which counts as 2 at least
+QUALITIES = {"fast": (0.5, 0.12, 120, 4), "default": (0.44, 0.045, 240, 6), "fine": (0.4, 0.035, 288, 6)}
 # Times the number of waves as wide as the contact at its end on y = 0, as deep inside as the triangles there.
 AT_END = 5.0
 STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish
-SAFETY = 2.0  # of the change from the companion
+COARSER = 1.3  # triangles of the companion over those of the mesh
+# Roache's grid convergence index for two meshes, times the change from the companion: of what the conditions
+# give, with their order, and of fields, with that observed beside edges, which no mesh follows
+SAFETY, ORDER = 3.0, (WEIGHT + 5) / 2
+BY_CONDITIONS, OF_FIELDS = SAFETY / (COARSER**ORDER - 1), 2.0
 # times as much on the axis, where integrals in r dr hold the fields least; so far around it
 AXIS = 2.25, 0.15
 RESOLVED = 1 / 8  # of an element's width
-COARSER = 1.3  # triangles of the companion over those of the mesh
 CORRECTING = 96  # of the harmonics, that correct the pressure
-DEGREE = 4  # of the polynomial in the pressure, over the number of waves around, which counts as 2 at least
-ROUGH_DEGREE = 4
+ROUGH_DEGREE, LOWER = 4, 2  # degree on the rough mesh; by which that of the companion is lowered
 ROUNDS = 12  # of rough meshes, each wider where the contact leaves it
 ENOUGH_ROUGH = 1e-4  # change of the rough edge in the last step
 TYPICAL = 97  # per cent of points below the contact whose stress changes less from the companion
@@ -84,7 +90,7 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
-    further : pressure of a higher degree on the companion's mesh
+    lower : pressure of a lower degree on the companion's mesh
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
@@ -99,7 +105,7 @@ class ShapedContact(PressedSolid):
     uncertainty: Uncertainty | None
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
-    further: StarPressure | None = field(default=None, repr=False)
+    lower: StarPressure | None = field(default=None, repr=False)
     typical: float = 0.0
     opposite: "ShapedContact | None" = field(default=None, repr=False)
     frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
@@ -109,7 +115,8 @@ class ShapedContact(PressedSolid):
         """Value of a quantity at points, with its uncertainty when it was estimated.
 
         Arguments as of ``PressedSolid.sample``; a scalar is contact_radius, approach, peak_pressure, extent_x
-        or extent_y. The stress has the error of the pressure too, the displacement that of the approach.
+        or extent_y. The stress has the error of the pressure too, on the surface where it acts, the displacement that of the
+        approach.
         """
         stated = uncertainty and self.uncertainty is not None and self._coarse is not None
         scalars = ("contact_radius", "approach", "peak_pressure", "extent_x", "extent_y")
@@ -130,9 +137,10 @@ class ShapedContact(PressedSolid):
         x, y = points.x, points.y
         smeared = np.where(np.asarray(points.z) == 0, self._smeared(x, y), 0.0)
         distance = np.hypot(x, y) / (AXIS[1] * self._units.length)
-        safety = SAFETY * (1 + (AXIS[0] - 1) * np.maximum(1 - distance, 0))
-        floor = self._errors[2] + smeared
-        return ElementAnswer(value, np.maximum(safety * U, SAFETY * self.typical) + floor)
+        safety = OF_FIELDS * (1 + (AXIS[0] - 1) * np.maximum(1 - distance, 0))
+        of_pressure = np.where(np.asarray(points.z) == 0, self._uncertain_pressure(x, y), 0.0)
+        change = np.maximum(safety * U, OF_FIELDS * self.typical)
+        return ElementAnswer(value, np.maximum(change, of_pressure) + self._errors[2] + smeared)
 
     @property
     def _errors(self) -> tuple[float, ...]:
@@ -170,13 +178,37 @@ class ShapedContact(PressedSolid):
         return np.where(on_series, 0.0, (1 - 2 * nu) / (1 - nu) * np.max(missed, axis=0))
 
     def _pressure(self, points: Any, stated: bool) -> ElementAnswer:
-        """Pressure [Pa], uncertain by the change from the companion and that of the peak."""
+        """Pressure [Pa], uncertain by the changes as far from the edge and, at fixed points, there too."""
         p = self._given(points)
-        if not stated or self._coarse is None or self.further is None:
+        if not stated or self._coarse is None or self.lower is None:
             return ElementAnswer(p)
-        other, further = (self._other(points, one) for one in (self._coarse.pressure, self.further))
-        change = SAFETY * np.abs(p - other) + np.abs(other - further)
-        return ElementAnswer(p, change + self._errors[2])
+        U = self._uncertain_pressure(points.x, points.y)
+        companion, lower = (self._other(points, one) for one in (self._coarse.pressure, self.lower))
+        here = BY_CONDITIONS * np.abs(p - companion) + np.abs(companion - lower)
+        return ElementAnswer(p, np.maximum(here, U))
+
+    def _uncertain_pressure(self, x: Any, y: Any) -> np.ndarray:
+        """Uncertainty of the pressure [Pa] at points as far from the edge as x, y; 0 outside."""
+        w, _ = self._fine.pressure.polar(*(np.asarray(v) / self._units.length for v in (x, y)))
+        return np.interp(w, *self._changes_inwards, right=0.0)
+
+    @cached_property
+    def _changes_inwards(self) -> tuple[np.ndarray, np.ndarray]:
+        """Shares w of the way to the edge and the largest change [Pa] around the contact and next to each.
+
+        Changes of the companion and of the degree, all at the same share of the way to the own edge, since a
+        change at one point may be small by chance.
+        """
+        assert self._coarse is not None
+        assert self.lower is not None
+        w = 1 - np.geomspace(1, 1e-4, 60)
+        turn = np.linspace(0, np.pi, 73)
+        fine, companion, lower = (
+            one(*one.points(w[:, None], turn))
+            for one in (self._fine.pressure, self._coarse.pressure, self.lower)
+        )
+        change = BY_CONDITIONS * np.abs(fine - companion) + np.abs(companion - lower)
+        return w, maximum_filter1d(change.max(axis=1), 5) * self._units.pressure
 
     def _other(self, points: Any, pressure: StarPressure) -> np.ndarray:
         """Another pressure [Pa] at the points that are compared."""
@@ -241,7 +273,7 @@ def solve_shape(
     begin = StarPressure.of_ellipse(
         shape.centre, (first * axes[0], first * axes[1]), load / E, shape.fold, ROUGH_DEGREE
     )
-    degree = DEGREE * waves if degree is None else degree
+    degree = usual[3] * waves if degree is None else degree
 
     def solids(reach: float) -> tuple[LayeredSolid, ...]:
         scaled = tuple(LayeredSolid.scaled(*one, reach, far, E) for one in layers)
@@ -299,18 +331,18 @@ def solve_shape(
     sliding = (friction, -friction)
     fine = [_fields(found, k, sliding[k], surface) for k in range(len(layers))]
     coarse: list[OffAxisFields | None] = [None] * len(layers)
-    uncertainty, extents, further = None, None, None
+    uncertainty, extents, lower = None, None, None
     if estimate_uncertainty:
         coarser = ShapedGrid(COARSER * size, COARSER * surface, harmonics, MARGIN, DENSITY / COARSER)
         start = found.pressure.scaled(1 / reach)
         companion = on_mesh(reach, coarser, start)
-        higher = companion.of_degree(degree + 2, *arguments(reach, coarser))
-        further = higher.pressure
+        fewer = companion.of_degree(degree - LOWER, *arguments(reach, coarser))
+        lower = fewer.pressure
         coarse = [_fields(companion, k, sliding[k], COARSER * surface) for k in range(len(layers))]
-        change = SAFETY * np.abs(numbers - _numbers(companion))
+        change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
         change[1] = max(change[1], STIFF * (size / QUALITIES["default"][0]) ** 4 * numbers[1])
-        cut = np.abs(_numbers(companion) - _numbers(higher))
-        left = np.maximum(residual, SAFETY * found.errors) * np.abs(numbers)
+        cut = np.abs(_numbers(companion) - _numbers(fewer))
+        left = np.maximum(residual, OF_FIELDS * found.errors) * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
         parts = (("element size", change), ("degree of the pressure", cut), ("gap left", left))
@@ -347,7 +379,7 @@ def solve_shape(
                 uncertainty=uncertainty,
                 extent_uncertainty=extents,
                 height=shape.height,
-                further=further,
+                lower=lower,
                 typical=_typical(PressedSolid(*pair, unit)) if estimate_uncertainty else 0.0,
                 opposite=sides[0] if sides else None,
             )

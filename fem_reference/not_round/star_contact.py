@@ -24,7 +24,6 @@ RADIAL = 6  # points between two vertices of the surface
 ANGULAR = 24, 1.6  # points on an arc inside the contact: some, and more for each harmonic
 SAMPLES = 256  # on half a circle, between which an arc begins or ends
 BISECTIONS = 48
-HIGHEST = 6  # harmonic of the contour, beyond those that the pressure may have
 
 
 def hertz_axes(curvatures: tuple[float, float], load: float, compliance: float) -> tuple[float, float]:
@@ -78,7 +77,7 @@ class StarPressure:
     @cached_property
     def waves(self) -> tuple[int, ...]:
         """n of the contour."""
-        return tuple(range(0, min(self.degree + 2, max(HIGHEST, 3 * self.fold)) + 1, self.fold))
+        return tuple(range(0, self.degree + 1, self.fold))
 
     def terms(self, degree: int) -> tuple[tuple[int, int], ...]:
         """(n, j) with n + 2 j up to ``degree``."""
