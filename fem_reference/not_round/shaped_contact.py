@@ -11,7 +11,8 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
+from scipy.interpolate import RegularGridInterpolator
+from scipy.ndimage import maximum_filter
 
 from fem_reference.element_answer import ElementAnswer, ElementPoints, Uncertainty
 from fem_reference.meshing.mesh import surface_size
@@ -115,8 +116,8 @@ class ShapedContact(PressedSolid):
         """Value of a quantity at points, with its uncertainty when it was estimated.
 
         Arguments as of ``PressedSolid.sample``; a scalar is contact_radius, approach, peak_pressure, extent_x
-        or extent_y. The stress has the error of the pressure too, on the surface where it acts, the displacement that of the
-        approach.
+        or extent_y. The stress has the error of the pressure too, on the surface where it acts, the
+        displacement that of the approach.
         """
         stated = uncertainty and self.uncertainty is not None and self._coarse is not None
         scalars = ("contact_radius", "approach", "peak_pressure", "extent_x", "extent_y")
@@ -189,26 +190,26 @@ class ShapedContact(PressedSolid):
 
     def _uncertain_pressure(self, x: Any, y: Any) -> np.ndarray:
         """Uncertainty of the pressure [Pa] at points as far from the edge as x, y; 0 outside."""
-        w, _ = self._fine.pressure.polar(*(np.asarray(v) / self._units.length for v in (x, y)))
-        return np.interp(w, *self._changes_inwards, right=0.0)
+        w, tau = self._fine.pressure.polar(*(np.asarray(v) / self._units.length for v in (x, y)))
+        found = self._changes_inwards(np.stack([np.minimum(w, 1), tau], axis=-1))
+        return np.where(w < 1, found, 0.0)
 
     @cached_property
-    def _changes_inwards(self) -> tuple[np.ndarray, np.ndarray]:
-        """Shares w of the way to the edge and the largest change [Pa] around the contact and next to each.
+    def _changes_inwards(self) -> RegularGridInterpolator:
+        """Largest change [Pa] near w, tau: by the companion, and by the degree of the pressure.
 
-        Changes of the companion and of the degree, all at the same share of the way to the own edge, since a
-        change at one point may be small by chance.
+        All at the same w, the share of the way to the own edge. A change at one point may be small by chance:
+        within one wave of the polynomial around the contact, and next to w, the largest counts.
         """
         assert self._coarse is not None
         assert self.lower is not None
-        w = 1 - np.geomspace(1, 1e-4, 60)
-        turn = np.linspace(0, np.pi, 73)
-        fine, companion, lower = (
-            one(*one.points(w[:, None], turn))
-            for one in (self._fine.pressure, self._coarse.pressure, self.lower)
-        )
+        pressures = self._fine.pressure, self._coarse.pressure, self.lower
+        w, turn = 1 - np.geomspace(1, 1e-4, 60), np.linspace(0, np.pi, 97)
+        fine, companion, lower = (one(*one.points(w[:, None], turn)) for one in pressures)
         change = BY_CONDITIONS * np.abs(fine - companion) + np.abs(companion - lower)
-        return w, maximum_filter1d(change.max(axis=1), 5) * self._units.pressure
+        wave = 2 * round(turn.size / self._fine.pressure.degree) + 1
+        largest = maximum_filter(change, (5, wave), mode=("nearest", "mirror")) * self._units.pressure
+        return RegularGridInterpolator((np.append(w, 1.0), turn), np.vstack([largest, largest[-1:]]))
 
     def _other(self, points: Any, pressure: StarPressure) -> np.ndarray:
         """Another pressure [Pa] at the points that are compared."""
