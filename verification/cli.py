@@ -107,7 +107,7 @@ app.command(
 
 
 def _remedy(text: str, command: Sequence[str]) -> str:
-    """What to try after the ``text`` of an error in the words of a ``command``."""
+    """Advice after the ``text`` of an error, in the words of a ``command``."""
     meant = COMMANDS[command[0]].get("meant", {}) if command and command[0] in COMMANDS else {}
     unknown = re.search(r"--?(\w+)", text)
     if text.startswith("Unknown option") and unknown and unknown[1] in meant:

@@ -109,6 +109,8 @@ def in_si(text: str, unit: str) -> InSI:
         raise ValueError(f"{needs}; without a unit leave out the quotation marks")
     if name in METRIC[unit]:
         return InSI.given_in(float(Decimal(parts[1]).scaleb(METRIC[unit][name])), name)
+    if other := next((kind for kind in METRIC if name in METRIC[kind]), None):
+        raise ValueError(f"{needs}; {name!r} is not a unit of {_KINDS[unit]}, but of {_KINDS[other]}")
     try:
         if not _UNIT.fullmatch(name):
             raise ValueError(name)

@@ -30,6 +30,7 @@ from verification.commands.common.terminal import (
 from verification.guests.exam_subjects import exact_profile, subject_of
 from verification.guests.examination import Examined, examined, outcome_counts, packed_cases
 from verification.guests.guest_description import FILE, Guest, parse_guest, read_guest
+from verification.guests.guest_protocol import Question
 from verification.guests.pages.guest_page import badge, summary
 from verification.guests.pages.guest_page import page as render
 from verification.judging.outcome import Outcome
@@ -82,15 +83,19 @@ def init(folder: Path, /, *, program: Flag = False) -> int:
 
 
 @with_exit_code
-def pack(folder: Path, /, *cases: str, jobs: Jobs = None, quiet: Quiet = False) -> int:
+def pack(
+    folder: Path, /, *cases: str, mesh_hint: Flag = False, jobs: Jobs = None, quiet: Quiet = False
+) -> int:
     """Write every problem as JSON with its points as CSV, for codes that cannot be called.
 
-    Fill in contact.csv and points.csv of each problem, leave empty what the code does not give, then run
-    coatcheck guest judge. A guest.toml in the directory is used; otherwise one is written.
+    Fill in contact.csv and points.csv of each problem, leave empty what the code does not give; or put a file
+    of nodes beside them: .frd, .vtu or nodes.csv. Then run coatcheck guest judge. A guest.toml in the
+    directory is used; otherwise one is written.
 
     Args:
         folder: Directory to make; files that are there stay as they are.
         cases: Names of shipped cases, see coatcheck list, or .toml files; all shipped ones unless given.
+        mesh_hint: Also show where the points of each problem lie, for a mesh that resolves them.
     """
     jobs = worker_count(jobs)
     chosen = _chosen(cases)
@@ -101,9 +106,27 @@ def pack(folder: Path, /, *cases: str, jobs: Jobs = None, quiet: Quiet = False) 
         raise CommandError(f'{folder / FILE}: results is missing; results = "answers" names the directory')
     with locked(folder / "report"):
         packed = packed_cases(guest, chosen, folder / "report", lambda t, limit: solve(t, jobs, limit, quiet))
-    line = f"{packed} problems in {folder / guest.results}; next: fill in their CSV files, then "
+    if mesh_hint:
+        _print_mesh(guest, packed)
+    line = f"{len(packed)} problems in {folder / guest.results}; next: fill in their CSV files, then "
     print_out(escape(f"{line}coatcheck guest judge {folder}"))
     return 0
+
+
+def _print_mesh(guest: Guest, questions: Sequence[Question]) -> None:
+    """Where the points of each question lie and how close together, in the units of the guest."""
+    heads = ("contact edge at r =", "interfaces at z =", "farthest r", "deepest z", "closest points")
+    table = named_table("problem", *heads)
+    for one in questions:
+        lines = [np.array([q.x, q.y, q.z]) for q in one.lines if q.body == "flat"]
+        radius = max((np.hypot(*s[:2]).max() for s in lines), default=0.0)
+        depth = max((s[2].max() for s in lines), default=0.0)
+        close = min((np.linalg.norm(np.diff(s), axis=0).min(initial=np.inf) for s in lines), default=np.inf)
+        depths = ", ".join(f"{z:.4g}" for z in np.cumsum([c.thickness for c in one.problem.coatings]))
+        shown = [f"{v:.3g}" for v in (radius, depth, close)]
+        table.add_row(escape(one.id), f"{one.edge:.4g}", depths or "-", *shown)
+    print_out(table)
+    print_out(f"[dim]lengths in {guest.units.length}[/]")
 
 
 @with_exit_code
@@ -199,7 +222,9 @@ def check(guest: str, /, *, output: Folder = None, jobs: Jobs = None, as_json: A
 
 
 def _print_causes(found: Examined) -> None:
-    """Each likely slip, with how many wrong answers it explains in which cases."""
+    """Remarks on the answers; each likely slip, with how many wrong answers it explains in which cases."""
+    for text, count in found.remarks.items():
+        print_out(f"[bold]->[/] {escape(one_line(text))}" + (f" ({count} cases)" if count > 1 else ""))
     for by in found.causes.values():
         message = next(iter(by.values())).message
         count = len({(case, *place) for case, cause in by.items() for place in cause.places})

@@ -34,7 +34,6 @@ from verification.commands.common.shared_options import (
 from verification.commands.common.task_progress import (
     executor_at,
     kept_results,
-    kept_study,
     run_info,
     solve,
     worker_count,
@@ -110,7 +109,7 @@ def run(
         known = read_baseline(baseline)
         with executor_at(scheduler) as executor, locked(output):
             kept = kept_results(chosen, output, fields=fields) if resume else {}
-            accuracy = kept_study(output) if resume and not cases else None
+            accuracy = _kept_study(output) if resume and not cases else None
             tasks: list[Task[CaseResult | AccuracyStudy]] = [
                 case_task(case, output, fields=fields) for case in chosen if case.name not in kept
             ]
@@ -168,6 +167,15 @@ def run(
         late += stated.warnings if stated is not None else ()
         print_warnings(late, result.name, strict=strict, silent=silent)
     return code
+
+
+def _kept_study(output: Path) -> AccuracyStudy | None:
+    """The earlier accuracy study where it can be kept; prints why it cannot."""
+    try:
+        return accuracy_study.stored(output)
+    except StoreError as error:
+        print_error(f"{error}; measured again")
+        return None
 
 
 def _standing(chosen: Sequence[Case | PublishedCase], records: Path) -> "Evidence":

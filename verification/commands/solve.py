@@ -322,7 +322,7 @@ def _print(
 
 
 def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:
-    """What the answer is good for: error of the model, range of the verification."""
+    """Prints what the answer is good for: error of the model, range of the verification."""
     if beyond.parts:
         head = "the model itself is good to"
         print_out(*map(escape, (head, *(f"  {part}" for part in beyond.parts), *beyond.notes)))

@@ -138,7 +138,7 @@ class _Layers:
         return with_residual(measure, self.residual[layer])
 
     def _shown(self, found: Located, layer: int) -> Located:
-        """As ``tensile`` in a layer without residual stress; with one as it is, with its sign."""
+        """Largest tension of a layer as shown: ``tensile`` without residual stress, else with its sign."""
         return found if self.residual[layer] else tensile(found)
 
     def name(self, number: int) -> str:

@@ -25,7 +25,7 @@ Names = Mapping[str, tuple[str, ...]]  # of the coatings of each body, see ``Cas
 
 @dataclass(frozen=True)
 class ContactAnswer:
-    """What ``source`` answers: ``numbers`` as (value, uncertainty) by name, SI; extremes, courses.
+    """Answer of one ``source``: ``numbers`` as (value, uncertainty) by name, SI; extremes, courses.
 
     An uncertainty is None where the source states none.   strains : the largest strain of each layer.
     """
@@ -111,7 +111,7 @@ ON_AXIS = 5e-3  # of a place from the axis, over a_h
 
 
 def summary(problem: CoatedContact, found: ContactAnswer, names: Names) -> str:
-    """Where both bodies are pulled, sheared and yield the most, in three digits.
+    """Largest tension, shear and von Mises stress of both bodies with their places, in three digits.
 
     The largest tension of a coating comes first, then that of all where it is elsewhere; then the largest
     sigma_xx at the base of a coating, which cracks from there too, and the interface that is sheared most.

@@ -26,7 +26,7 @@ class DesignAnswer:
 
     @property
     def verdict(self) -> str:
-        """What fails, or what is nearest to it, in words; "" where the case states no strength."""
+        """Verdict in words: what fails, or what is nearest to it; "" where the case states no strength."""
         return verdict(self.case, self.modes)
 
     def __str__(self) -> str:
@@ -48,7 +48,7 @@ class DesignAnswer:
         ]
 
     def _repr_html_(self) -> str:
-        """The same for a notebook, with the figure."""
+        """Sentence, table and figure for a notebook."""
         from verification.desk.answer_figure import write
 
         with tempfile.TemporaryDirectory() as folder:

@@ -18,7 +18,7 @@ def many(case: Case) -> bool:
 
 
 def worst_of_each(case: Case, found: Iterable[At]) -> tuple[At, ...]:
-    """Of each material and quantity the largest, of the interfaces too; everything where layers are few."""
+    """The largest of each quantity by material, and of the interfaces; everything where layers are few."""
     worst: dict[tuple[str, ...], At] = {}
     for at in found:
         kind, _, number = at.where.rpartition(" ")

@@ -109,7 +109,7 @@ def body_label(problem: CoatedContact, body: str, where: str) -> str:
 
 
 def outside_verified(case: Case) -> str:
-    """What lies outside the ranges of the random problems of both methods; "" for nothing.
+    """Names of the inputs outside the ranges of the random problems of both methods; "" for none.
 
     Their thicknesses are over a_h of the bare bodies; on a film of another modulus the contact's own radius a
     counts too.

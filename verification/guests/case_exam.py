@@ -43,7 +43,7 @@ def prepare(case: Subject, path: Path) -> None:
 
 
 def exam_path(folder: Path, case: Subject) -> Path:
-    """Where the exact reference of ``case`` lies in a run directory."""
+    """Path of the exact reference of ``case`` in a run directory."""
     return folder / "problems" / f"{case.name}.json"
 
 

@@ -1,4 +1,4 @@
-"""What a guest is examined on: the contact of a case, then its solid under a uniform disc, under a square.
+"""Subjects of a guest's exam: the contact of a case, then its solid under a uniform disc, under a square.
 
 A prescribed load tries the response of the solid without the search for the contact, whose iteration or edge
 profile hides the error of a poor influence coefficient.

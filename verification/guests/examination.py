@@ -15,6 +15,7 @@ from verification.guests.doors.file_door import pack
 from verification.guests.doors.program_door import TimedAnswer
 from verification.guests.exam_subjects import Subject, subjects_of
 from verification.guests.guest_description import Guest
+from verification.guests.guest_protocol import Question
 from verification.guests.guest_verdicts import judged, refused
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.running.case_result import CaseResult
@@ -53,6 +54,11 @@ class Examined:
         """Case, quantity, line of each wrong answer that a likely slip explains."""
         by = (one for cases in self.causes.values() for one in cases.items())
         return {(case, *place) for case, cause in by for place in cause.places}
+
+    @property
+    def remarks(self) -> Counter[str]:
+        """What coatcheck has to say about the answers themselves, with the number of cases."""
+        return Counter(text for replies in self.replies.values() for text in set(replies[-1].answer.warnings))
 
     @cached_property
     def total(self) -> Counter[Outcome]:
@@ -116,19 +122,22 @@ def examined(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve, jo
     return Examined(guest, tuple(results), replies, subjects)
 
 
-def packed_cases(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve) -> int:
-    """Write the files to fill in of each case that ``guest`` supports; returns how many.
+def packed_cases(guest: Guest, cases: Sequence[Case], folder: Path, solve: Solve) -> list[Question]:
+    """Write the files to fill in of each case that ``guest`` supports; returns the finest question of each.
 
     Raises StoreError where one cannot be solved or written.
     """
     chosen = [case for case in subjects_of(cases, guest) if guest.refusal(case.problem) is None]
+    packed = []
     for case, exam in zip(chosen, _exams(chosen, folder, solve), strict=True):
         if not exam.profiles:
             raise StoreError(f"{case.name}: {exam.sources[0].failure}")
         claims = claims_of(case, guest)
-        for parameter in guest.questions:
-            pack(guest, case, question_of(case, exam, guest, claims, parameter))
-    return len(chosen)
+        questions = [question_of(case, exam, guest, claims, parameter) for parameter in guest.questions]
+        for question in questions:
+            pack(guest, case, question)
+        packed.append(questions[-1])
+    return packed
 
 
 def _exams(cases: Sequence[Subject], folder: Path, solve: Solve) -> list[CaseResult]:

@@ -28,7 +28,7 @@ Level = Annotated[int | float, Field(gt=0)]
 
 
 class Supports(Strict):
-    """What a code can solve: the largest number of coatings, friction, stresses, an elastic ball.
+    """Abilities of a code: the largest number of coatings, friction, stresses, an elastic ball.
 
     ellipsoid : an indenter with two radii of curvature.
     loads : prescribed ones, each a uniform pressure on a disc or on a square.
@@ -52,11 +52,32 @@ class GuestUnits(Strict):
     force: Literal["N", "mN", "uN", "kN", "lbf"] = "N"
 
 
+Axis = Literal["x", "y", "z", "r", "t", "-x", "-y", "-z"]
+
+
+class NodalFile(Strict):
+    """How a file of nodes is read.
+
+    axes : what its coordinates are, "-z" where they point out of the solid; with "r" it is axisymmetric.
+    """
+
+    axes: Annotated[list[Axis], Field(min_length=2, max_length=3)] = Field(default=["r", "z"])
+
+    @model_validator(mode="after")
+    def _a_basis(self) -> "NodalFile":
+        letters = {axis[-1] for axis in self.axes}
+        bases = ({"r", "z"}, {"r", "t", "z"}, {"x", "z"}, {"x", "y", "z"})
+        if len(letters) != len(self.axes) or letters not in bases:
+            raise ValueError(f"axes = {self.axes}; give r and z, or x, y and z, each once")
+        return self
+
+
 class GuestFile(Strict):
     """The keys of a guest file.
 
     callable, command, results : the way in, one of the three.
     python : the interpreter of ``callable``, of an environment with numpy; coatcheck's own unless given.
+    nodes : how files of nodes below ``results`` are read.
     claim : largest relative difference that the code claims to have; None where it does not say.
     edge : half-width of a zone around the contact edge that is left out, as a fraction of a.
     refine : numerical parameter of the refinement study with its values, coarse to fine.
@@ -74,6 +95,7 @@ class GuestFile(Strict):
     homepage: Text | None = None
     supports: Supports = Supports()
     units: GuestUnits = GuestUnits()
+    nodes: NodalFile = NodalFile()
     refine: Annotated[
         dict[str, Annotated[list[Level], Field(min_length=3, max_length=12)]], Field(max_length=1)
     ] = Field(default_factory=dict)

@@ -5,7 +5,7 @@ from enum import StrEnum
 
 
 class Outcome(StrEnum):
-    """What a comparison came to; only AGREES passes.
+    """Outcome of a comparison; only AGREES passes.
 
     UNSUPPORTED : of guests alone, a quantity that the code does not give. It neither passes nor fails.
     """

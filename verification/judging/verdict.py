@@ -55,7 +55,7 @@ class Comparison:
 
 @dataclass(frozen=True)
 class Judged:
-    """What a verdict was decided on.
+    """Numbers on which a verdict was decided.
 
     cap : in force, a fraction of ``scale`` [SI].   points : number of judged points.
     extent : first and last of them [m].   gap : widest distance between neighbours [m].

@@ -25,7 +25,8 @@ class Quantity:
     unit : SI, "1" for none.   scale : property of CoatedContact that values are divided by.
     cap : largest admissible uncertainty, over the same divisor as differences, see ``divisor``.
     least : smallest cap against published values.
-    component : of a stress or strain tensor.
+    component : of a stress or strain tensor.   weights : of sigma_xx, sigma_yy, sigma_zz in a sum that the
+    quantity is, or whose largest magnitude on the axis it is.
     """
 
     name: str
@@ -39,6 +40,7 @@ class Quantity:
     least: float = 0.0
     component: tuple[int, int] | None = None
     meaning: str = ""
+    weights: tuple[float, float, float] | None = None
 
     def divisor(self, value: float, p_h: float, p0: float, a: float, delta_h: float, delta: float) -> float:
         """Divisor of a difference [SI]: |value| of a scalar or slope, |value| >= a of a place.
@@ -75,6 +77,7 @@ def _tension(kind: str, end: str = "", of: str = "", tex: str = "") -> Iterator[
 
 
 _AXIS, _CONTACT, _CURVE, _POINTS, _SURFACE = ("axis",), ("contact",), ("curve",), ("points",), ("surface",)
+_DIFFERENCE, _HALF = (-1.0, 0.0, 1.0), (-0.5, 0.0, 0.5)  # sigma_zz - sigma_xx
 _BOTH = (*_CONTACT, *_CURVE)
 _SHEAR, _MISES = "largest shear on the axis", "largest von Mises stress on the axis"
 _TENSION, _PLACE = "largest sigma_xx of the surface on y = 0", "x of the largest sigma_xx of the surface"
@@ -93,8 +96,17 @@ QUANTITIES: dict[str, Quantity] = {
         Quantity(
             "stiffness", "slope", _CONTACT, "dW/d delta", r"dW/d\delta", "N/m", "S_h", 2e-5, meaning=_SLOPE
         ),
-        Quantity("tau_max", "scalar", _AXIS, "tau_max", r"\tau_{max}", "Pa", meaning=_SHEAR),
-        Quantity("von_mises_max", "scalar", _AXIS, "von_mises_max", r"\sigma_{vM}", "Pa", meaning=_MISES),
+        Quantity("tau_max", "scalar", _AXIS, "tau_max", r"\tau_{max}", "Pa", meaning=_SHEAR, weights=_HALF),
+        Quantity(
+            "von_mises_max",
+            "scalar",
+            _AXIS,
+            "von_mises_max",
+            r"\sigma_{vM}",
+            "Pa",
+            meaning=_MISES,
+            weights=_DIFFERENCE,
+        ),
         *_tension("peak"),
         *_tension("ball peak", "_ball", " of the ball", "^b"),
         Quantity("load", "curve", _CURVE, "W", "W", "N", cap=_LOOSE),
@@ -105,8 +117,10 @@ QUANTITIES: dict[str, Quantity] = {
         ),
         Quantity("pressure", "pressure", _POINTS, "p", "p", "Pa"),
         *_tensor("stress", "sigma", r"\sigma", "Pa", ("xx", "yy", "zz", "xz", "xy", "yz")),
-        Quantity("sigma_kk", "stress", _POINTS, "sigma_kk", r"\sigma_{kk}", "Pa"),
-        Quantity("sigma_zz - sigma_xx", "stress", _POINTS, "sigma_zz - sigma_xx", "", "Pa"),
+        Quantity("sigma_kk", "stress", _POINTS, "sigma_kk", r"\sigma_{kk}", "Pa", weights=(1.0, 1.0, 1.0)),
+        Quantity(
+            "sigma_zz - sigma_xx", "stress", _POINTS, "sigma_zz - sigma_xx", "", "Pa", weights=_DIFFERENCE
+        ),
         *_tensor("strain", "eps", r"\varepsilon", "1", ("xx", "yy", "zz"), _LOOSE),
         *(
             Quantity(f"u_{c}", "displacement", _POINTS, f"u_{c}", f"u_{c}", "m", "delta_h", 1e-4, _LOOSE)

@@ -4,7 +4,8 @@ On the machine and with the versions of the baseline a value is the same where
 
     |now - then| <= max(1e-8 scale, min(U, 1e-6 scale))
 
-and a stated uncertainty within ``SAME``. On any machine a value has left its baseline where
+and a stated uncertainty within ``SAME``, or, being made of changes of values, by the same rule and at most
+``TWOFOLD``. On any machine a value has left its baseline where
 
     |now - then| > max(U, 5e-11 scale)
 
@@ -34,7 +35,7 @@ KERNEL = 1e-6  # another kernel of BLAS, another number of threads
 TOLERANCE = 5e-11
 FAINT = 1e-3
 FACTOR = 4.0
-SAME = 1.1
+SAME, TWOFOLD = 1.1, 2.0
 # Where points moved further, over the length of the line, their values are not compared.
 SHIFT = 1e-6
 
@@ -117,7 +118,9 @@ def drift(then: Numbers, now: Numbers) -> Drift:
     near = np.fmax(RELATIVE, np.fmin(stated / scale, KERNEL))
     moved = left | ~(change <= near) | (not shift <= SHIFT)
     ratio = _ratio(then, now, TOLERANCE * scale)
-    other, far = (~((ratio >= 1 / factor) & (ratio <= factor)) for factor in (SAME, FACTOR))
+    other, twofold, far = (~((ratio >= 1 / factor) & (ratio <= factor)) for factor in (SAME, TWOFOLD, FACTOR))
+    if now.uncertainty is not None and then.uncertainty is not None:
+        other &= twofold | ~(np.abs(now.uncertainty - then.uncertainty) / scale <= near)
     messages = []
     if not shift <= SHIFT:
         messages.append(f"its points moved by {shift:.1e} of the line")

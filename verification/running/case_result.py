@@ -92,7 +92,7 @@ class CaseResult:
 
 @dataclass(frozen=True)
 class RunInfo:
-    """Provenance of a run: the command, its start (ISO 8601), seconds, versions by package."""
+    """Provenance of a run: command, start (ISO 8601), seconds, versions by package, hash of the source."""
 
     command: str
     started: str
@@ -101,6 +101,7 @@ class RunInfo:
     commit: str | None
     machine: str
     versions: dict[str, str]
+    source: str = ""
 
 
 def to_json(result: CaseResult) -> dict[str, Any]:

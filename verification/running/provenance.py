@@ -9,6 +9,8 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from threadpoolctl import threadpool_info
+
 from verification.sources.source_registry import METHODS, SOURCES
 
 PACKAGES = (
@@ -34,6 +36,16 @@ NOT_INSTALLED = "not installed"
 def versions(packages: Iterable[str] = PACKAGES) -> dict[str, str]:
     """Version of Python and of each package, by default of those that results depend on."""
     return {"python": platform.python_version()} | {name: _version(name) for name in packages}
+
+
+def numerical_versions() -> dict[str, str]:
+    """Versions, and the kernel of each BLAS that is loaded, on which the seventh digit depends."""
+    kernels = {
+        f"{one['internal_api']} {one['version']}, {one.get('architecture') or 'unknown'} kernel"
+        for one in threadpool_info()
+        if one["user_api"] == "blas"
+    }
+    return versions() | {"BLAS": "; ".join(sorted(kernels))}
 
 
 @cache

@@ -78,25 +78,22 @@ def _beside_edge(solution: Solution, at: TablePoints, edge: float | None) -> Poi
 
 
 def _extreme(solution: Solution, quantity: str) -> tuple[float, float | None]:
-    """The largest tau = |sigma_zz - sigma_xx|/2, where a parabola through three points has its top."""
+    """The largest weighted sum of stresses on the axis, where a parabola through three points has its top."""
     z = solution.contact_radius * np.linspace(0.3, 0.7, 21)
-    sigma = solution.stress(0.0, 0.0, z)
-    tau = np.abs(sigma[2, 2] - sigma[0, 0]) / 2
-    top = int(np.clip(tau.argmax(), 1, z.size - 2))
-    low, here, high = tau[top - 1 : top + 2].tolist()
-    share = 2.0 if quantity == "von_mises_max" else 1.0
-    value = share * (here + (high - low) ** 2 / (8 * (2 * here - low - high)))
+    weights = np.array(QUANTITIES[quantity].weights)
+    along = np.abs(np.einsum("i,iij->j", weights, solution.stress(0.0, 0.0, z)))
+    top = int(np.clip(along.argmax(), 1, z.size - 2))
+    low, here, high = along[top - 1 : top + 2].tolist()
+    value = here + (high - low) ** 2 / (8 * (2 * here - low - high))
     U = solution.sample(Points(0.0, 0.0, z[[top]]), "stress").uncertainty
-    return value, None if U is None else share * float(U[2, 2, 0] + U[0, 0, 0]) / 2
+    return value, None if U is None else float(np.einsum("i,iij->j", np.abs(weights), U)[0])
 
 
 def _weights(quantity: str, E: float, nu: float) -> Array:
     """The quantity as a sum of weights times stresses, (3, 3)."""
-    if quantity == "sigma_kk":
-        return np.eye(3)
-    if quantity == "sigma_zz - sigma_xx":
-        return np.diag([-1.0, 0.0, 1.0])
     record = QUANTITIES[quantity]
+    if record.weights is not None:
+        return np.diag(record.weights)
     weight = np.zeros((3, 3))
     weight[record.component] = 1.0
     return weight if record.kind == "stress" else ((1 + nu) * weight - nu * np.eye(3)) / E

@@ -61,7 +61,7 @@ class Parts:
         return (right + left) / 2, (right - left) / (2 * self.friction), np.moveaxis(bound, 1, 0)
 
     def uncertainty(self, bound: Array, friction: Array | float) -> Array:
-        """That of sigma_n + f sigma_t at x, (4, n), from those at x and -x, (2, 4, n).
+        """Uncertainty of sigma_n + f sigma_t at x, (4, n), from those at x and -x, (2, 4, n).
 
         sigma(x) = (g + f)/2g S(x) +- (g - f)/2g S(-x), S the stress at friction g.
         """

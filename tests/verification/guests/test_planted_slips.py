@@ -8,9 +8,14 @@ import numpy as np
 import pytest
 from guest_exams import GUEST, prepared, result_of
 
+from verification.cases.case_file import read_case, shipped_cases
+from verification.guests.case_exam import exam_path, prepare
 from verification.guests.diagnosis.other_solutions import sampled
 from verification.guests.diagnosis.slip_diagnosis import causes_of
+from verification.guests.exam_subjects import DISC, subject_of
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
+from verification.running.case_result import from_json
+from verification.running.checked_files import read_checked
 from verification.sources.source_registry import SOURCES
 
 CASE = "08_dlc_chromium_steel"  # two coatings of unlike thickness and material
@@ -196,3 +201,14 @@ def test_planted_slips_are_named_exactly_and_no_other(code, sets, share):
     assert len(inexact) <= (1 - share) * len(sets), inexact
     wrong = {n: m for n, m in inexact.items() if any(not any(ALL[one][1] in text for one in n) for text in m)}
     assert not wrong
+
+
+def test_a_slip_under_a_prescribed_load_is_named(tmp_path):
+    case = subject_of(read_case(shipped_cases()["01_uncoated_steel"]), DISC)
+    prepare(case, exam_path(tmp_path, case))
+    exam = from_json(read_checked(exam_path(tmp_path, case)))
+    values = {(p.quantity, p.line): p.value for p in exam.profiles if p.line != "contact"}
+    assert causes_of(case, result_of(case, exam, values), GUEST.name) == ()
+    wrong = {k: v * 1e-6 if k[0] in PRESSURES else v for k, v in values.items()}
+    (cause,) = causes_of(case, result_of(case, exam, wrong), GUEST.name)
+    assert "MPa in place of Pa" in cause.message

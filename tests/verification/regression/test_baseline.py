@@ -82,6 +82,16 @@ def test_a_change_counts_by_its_uncertainty_and_by_what_a_machine_explains(uncer
     assert (found.state, found.beyond) == (state, beyond)
 
 
+@pytest.mark.parametrize(
+    ("U", "by", "state"),
+    [(3.7e-6, 1.14, State.SAME), (3.7e-6, 2.2, State.DRIFTED), (3.7e-5, 1.14, State.DRIFTED)],
+)
+def test_an_uncertainty_changes_by_no_more_than_values_may(U, by, state):
+    then = replace(measured(RESULT)[0], value=np.ones(22), uncertainty=np.full(22, U), scale=1.0)
+    then = replace(then, position=np.arange(22.0))
+    assert drift(then, replace(then, uncertainty=np.full(22, U * by))).state is state
+
+
 def test_what_is_not_finite_is_strict_json_and_no_change_where_it_never_was_finite():
     off = changed(RESULT, 0, np.inf)
     assert case_drift(off, baseline_of(RESULT)).state is State.DRIFTED

@@ -1,4 +1,4 @@
-"""What a run found, on the terminal and as JSON."""
+"""Findings of a run, on the terminal and as JSON."""
 
 import os
 from collections import Counter

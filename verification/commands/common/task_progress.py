@@ -15,14 +15,12 @@ from verification.cases.published_file import PublishedCase
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.terminal import STYLE, one_line, print_error
 from verification.commands.common.terminal_bar import progress_bar
-from verification.credibility import accuracy_study as accuracy_study
-from verification.credibility.accuracy_study import AccuracyStudy
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.case_tasks import kept_result
 from verification.running.checked_files import StoreError
 from verification.running.pool.pool_task import Task
 from verification.running.pool.process_pool import run_tasks
-from verification.running.provenance import commit, cores, hardware, versions
+from verification.running.provenance import commit, cores, fingerprint, hardware, numerical_versions
 
 T = TypeVar("T")
 
@@ -70,15 +68,6 @@ def kept_results(
         if result is not None:
             kept[case.name] = result
     return kept
-
-
-def kept_study(output: Path) -> AccuracyStudy | None:
-    """The earlier accuracy study where it can be kept; prints why it cannot."""
-    try:
-        return accuracy_study.stored(output)
-    except StoreError as error:
-        print_error(f"{error}; measured again")
-        return None
 
 
 def solve(
@@ -148,5 +137,6 @@ def run_info(command: str, started: datetime.datetime, jobs: int, scheduler: str
         jobs=jobs,
         commit=commit(),
         machine=hardware() + (f" with the workers of {scheduler}" if scheduler else ""),
-        versions=versions(),
+        versions=numerical_versions(),
+        source=fingerprint(packages=()),
     )

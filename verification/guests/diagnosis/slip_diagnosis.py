@@ -108,7 +108,7 @@ class Diagnosis:
 
     @cached_property
     def wrong(self) -> list[Key]:
-        """Where an answer differs from the exact value by more than it may."""
+        """Marks of the values that differ from the exact one by more than they may."""
         return [
             (claim.quantity, claim.line)
             for claim, verdict in self.result.verdicts
@@ -169,7 +169,7 @@ class Diagnosis:
         return {(): self.exact}
 
     def _values(self, slips: list[Slip], chosen: tuple[int, ...]) -> Values:
-        """What the slips ``chosen``, in their order, make of the exact values."""
+        """Exact values after the slips ``chosen``, in their order."""
         made = tuple(slips[n] for n in chosen)
         if made not in self._made:
             last = made[-1]

@@ -33,7 +33,7 @@ MILLIONS = (1e-9, 1e-6, 1e6, 1e9)  # of uncoated solids alone: a coating would b
 
 @dataclass(frozen=True)
 class WrongInput:
-    """What a slip of the input made of a problem; ``name`` says which slip."""
+    """Problem as a slip of the input makes it; ``name`` says which slip."""
 
     name: str
     problem: CoatedContact

@@ -195,5 +195,5 @@ def _offset(values: Values, given: Values) -> Values:
     """The mean difference of sigma_xx and sigma_yy from ``given``, one for all lines, added to both."""
     keys = [k for k in given if k[0] in ("sigma_xx", "sigma_yy") and k in values]
     rest = np.concatenate([given[k] - values[k] for k in keys]) if keys else np.zeros(1)
-    constant = float(np.nanmedian(rest))
+    constant = float(np.median(rest[np.isfinite(rest)])) if np.isfinite(rest).any() else 0.0
     return {k: v + constant if k[0] in ("sigma_xx", "sigma_yy") else v for k, v in values.items()}

@@ -3,23 +3,24 @@
     DIR/answers/CASE/problem.json     the question of the protocol
     DIR/answers/CASE/contact.csv      quantity, unit, value, uncertainty
     DIR/answers/CASE/points.csv       number, line, x, y, z, layer, one column for each quantity
+    DIR/answers/CASE/*.frd, *.vtu, nodes.csv     stresses and displacements at nodes, in place of points.csv
 
 With a refinement study there is a directory for each level below that of the case. A cell that is left empty
 is not answered. A column ``U QUANTITY`` may be added; otherwise no uncertainty is stated.
 """
 
-import csv
-import io
 import json
 from pathlib import Path
 from typing import Any
 
+from verification.guests.doors.csv_rows import cell_number, csv_rows
+from verification.guests.doors.nodal_files import nodal_file
 from verification.guests.exam_subjects import Subject
 from verification.guests.guest_description import Guest
 from verification.guests.guest_protocol import VERSION, GuestAnswer, ProtocolError, Question
 from verification.page.page_parts import written
 from verification.problem.quantity import unit_of
-from verification.running.checked_files import StoreError, read_bounded, write_atomically
+from verification.running.checked_files import write_atomically
 
 MOST_BYTES = 20_000_000
 HEAD = ("number", "line", "x", "y", "z", "layer")
@@ -61,18 +62,28 @@ def read_answer(guest: Guest, case: Subject, question: Question) -> GuestAnswer:
     """The answer that was filled in. Raises ProtocolError naming file, row and column."""
     folder = place_of(guest, case, question)
     cells: Cells = {}
-    for where, row in _rows(folder / "contact.csv"):
+    nodes = nodal_file(folder)
+    scalars = folder / "contact.csv"
+    for where, row in csv_rows(scalars, MOST_BYTES) if nodes is None or scalars.exists() else ():
         if row.get("quantity") in question.contact:
             for column in ("value", "uncertainty"):
                 cells[column, "contact", row["quantity"]] = [(where, row.get(column) or "")]
-    if question.lines:
+    if question.lines and (nodes is None or (folder / "points.csv").exists()):
         cells |= _point_cells(folder / "points.csv", question)
-    found: dict[str, dict[str, dict[str, Any]]] = {"value": {}, "uncertainty": {}}
-    failed: dict[str, dict[str, str]] = {}
+    given: dict[str, Any] = {"values": {}, "uncertainty": {}, "missing": {}, "failed": {}, "warnings": []}
+    if nodes is not None:
+        from verification.guests.doors.nodal_door import answer_of  # imports much of SciPy
+
+        given = answer_of(nodes, list(guest.nodes.axes), question, stated=not guest.levels)
+    found: dict[str, dict[str, dict[str, Any]]] = {
+        "value": given.pop("values"),
+        "uncertainty": given.pop("uncertainty"),
+    }
+    failed: dict[str, dict[str, str]] = given["failed"]
     for (column, line, name), texts in cells.items():
         if any(text.strip() for _, text in texts):
             try:
-                numbers = [_number(text, where) for where, text in texts]
+                numbers = [cell_number(text, where) for where, text in texts]
             except ProtocolError as error:
                 failed.setdefault(line, {})[name] = str(error)
                 continue
@@ -85,12 +96,12 @@ def read_answer(guest: Guest, case: Subject, question: Question) -> GuestAnswer:
     known = {
         line: {q: v for q, v in by.items() if q in values.get(line, {})} for line, by in uncertainty.items()
     }
-    return GuestAnswer(protocol=VERSION, id=question.id, values=values, uncertainty=known, failed=failed)
+    return GuestAnswer(protocol=VERSION, id=question.id, values=values, uncertainty=known, **given)
 
 
 def _point_cells(path: Path, question: Question) -> Cells:
     rows: dict[str, tuple[str, dict[str, Any]]] = {}
-    for where, row in _rows(path):
+    for where, row in csv_rows(path, MOST_BYTES):
         key = (row.get("number") or "").strip()
         if key in rows:
             raise ProtocolError(f"{where}: number {key[:20]!r} occurs twice")
@@ -107,31 +118,6 @@ def _point_cells(path: Path, question: Question) -> Cells:
                 texts = [(f"{where}, {head}", row.get(head) or "") for where, row in mine]
                 cells[column, line.line, name] = texts
     return cells
-
-
-def _rows(path: Path) -> list[tuple[str, dict[str, Any]]]:
-    """Each row of a CSV file below its head, with its place for messages."""
-    try:
-        text = read_bounded(path, MOST_BYTES).decode("utf-8-sig")
-        # Spreadsheets of some languages separate by semicolons, with a decimal comma.
-        head = text.partition("\n")[0]
-        separator = ";" if head.count(";") > head.count(",") else ","
-        rows = list(csv.DictReader(io.StringIO(text), delimiter=separator))
-    except StoreError as error:
-        raise ProtocolError(str(error)) from None
-    except UnicodeDecodeError:
-        raise ProtocolError(f"{path}: not UTF-8 text") from None
-    except csv.Error as error:
-        raise ProtocolError(f"{path}: not CSV ({error})") from None
-    return [(f"{path}: row {number}", row) for number, row in enumerate(rows, start=2)]
-
-
-def _number(text: str, where: str) -> float:
-    try:
-        return float(text.strip().replace(",", "."))
-    except ValueError:
-        shown = text.strip()[:20]
-        raise ProtocolError(f"{where}: {shown!r} is not a number" if shown else f"{where} is empty") from None
 
 
 def _unit(unit: str, units: Any) -> str:

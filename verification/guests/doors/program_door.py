@@ -107,7 +107,7 @@ class Program:
                 self.unread += more
 
     def _silence(self, time_limit: float, count: int) -> str:
-        """What a program that is still at work has read and written since the question."""
+        """Sentence on how much a program still at work has read and written since the question."""
         read = "it has read the question" if not self._writing.is_alive() else "it has not read the question"
         wrote = f"written {count} bytes without an answer" if count else "written nothing"
         flush = "flush the output after each answer, or raise time_limit in guest.toml"

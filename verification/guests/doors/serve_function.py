@@ -53,7 +53,7 @@ class AtPoint(ValueError):
 
 
 def _given(result: Any, name: str) -> Any:
-    """What a mapping or an object has of this ``name``; None where it has nothing."""
+    """Entry of a mapping or attribute of an object of this ``name``; None where it has none."""
     return result.get(name) if isinstance(result, Mapping) else getattr(result, name, None)
 
 
@@ -157,7 +157,7 @@ class Given:
 
 
 def values_of(result: Any, problem: Load, question: Question) -> Given:
-    """What ``result`` gives of what is wanted, by line and quantity."""
+    """Values that ``result`` gives of those wanted, by line and quantity."""
     guest, given = GuestFields(result), Given()
     # A whole solution, as the methods return it, is sampled as they are.
     source: Any = result if guest.gives("sample", "uncertainty") else guest

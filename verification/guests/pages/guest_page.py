@@ -310,7 +310,7 @@ def _order(levels: Sequence[float], errors: Sequence[float]) -> float | None:
 
 
 def _missing(found: Examined) -> Section | None:
-    """What the guest did not answer, with the reason."""
+    """Questions that the guest did not answer, with the reason."""
     missing = (one for one in found.comparisons if one[2].outcome is Outcome.UNSUPPORTED)
     reasons = Counter((verdict.reason, claim.quantity) for _, claim, verdict in missing)
     if not reasons:

@@ -15,7 +15,7 @@ README, SCHEMA = (Path(__file__).parent / name for name in ("README.md", "vector
 
 
 def csv_texts(vectors: Sequence[dict[str, Any]]) -> dict[str, str]:
-    """The same content as ``problems.csv`` and ``values.csv``."""
+    """Texts of ``problems.csv`` and ``values.csv`` with the content of the JSON."""
     most = max(len(v["problem"]["coatings"]) for v in vectors)
     layers = [name for k in range(1, most + 1) for name in (f"E{k} [Pa]", f"nu{k}", f"thickness{k} [m]")]
     heads = {"radius": "m", "radius_x": "m", "radius_y": "m", "load": "N"}

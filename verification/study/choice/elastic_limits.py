@@ -1,4 +1,4 @@
-"""Where solved points of a study are not elastic: peak pressure above hardness, strains that are not small.
+"""Solved points of a study that are not elastic: peak pressure above hardness, strains that are not small.
 
 Yielding is a failure mode of the study itself, see ``failure_criteria``.
 """

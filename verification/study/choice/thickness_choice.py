@@ -53,7 +53,7 @@ class Chances:
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """What the curves of one modulus recommend, one for each friction; thicknesses over a_h.
+    """Recommendation by the curves of one modulus, one for each friction; thicknesses over a_h.
 
     modes : of the criterion.   h, use : dense samples, (frictions, modes, samples) of utilisations.
     error : of a utilisation, by interpolation.   tolerance : above the smallest one, ``least``, over it,

@@ -71,7 +71,7 @@ def answers(study: Study, found: Sequence[Critical]) -> list[str]:
 
 
 def _weakest(found: Sequence[Critical]) -> list[Critical]:
-    """Of each coating and thickness the lowest critical load, at the highest friction of equal ones."""
+    """The lowest critical load by coating and thickness, at the highest friction of equal ones."""
     weakest: dict[tuple[float, float], Critical] = {}
     for one in sorted(found, key=lambda one: (one.first[1], one.first[0], -one.ramp.friction)):
         weakest.setdefault((one.ramp.ratio, one.ramp.thickness), one)
@@ -199,7 +199,7 @@ def _maps(study: Study, found: Sequence[Critical]) -> list[Drawn]:
 
 
 def _tracks(study: Study, found: Sequence[Critical]) -> list[Drawn]:
-    """As a scratch test shows it: stress over strength along the ramp with Lc marked, then what has failed.
+    """Tracks as of a scratch test: stress over strength along the ramp with Lc marked, then the failures.
 
     For each coating and thickness at the friction with the lowest critical load.
     """

@@ -1,4 +1,4 @@
-"""What the reports of all studies share: figures as files, common sections, the page as a file."""
+"""Parts that the reports of all studies share: figures as files, common sections, the page as a file."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass

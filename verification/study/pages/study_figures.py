@@ -201,7 +201,7 @@ def _beside(axes: Axes, size: float, label: str) -> None:
 
 
 def _over(size: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
-    """Of a second axis: from a value to that over ``size``, and back."""
+    """Functions of a second axis: from a value to that over ``size``, and back."""
     return (lambda value: value / size), (lambda value: value * size)
 
 

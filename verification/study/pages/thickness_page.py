@@ -100,7 +100,7 @@ def _length(found: Choice, h: float, units: Units) -> str:
 
 
 def _limits(found: Choice, pair: Range) -> str:
-    """What sets each limit, with its share of the samples in which the coating fails there."""
+    """Cause of each limit, with its share of the samples in which the coating fails there."""
     said = []
     words = (
         ("the limit below is set where", "above where") if pair[0] else ("", "the limit above is set where")
