@@ -1,10 +1,12 @@
 """A case: one coated contact with the claims about it, read from a TOML file."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from math import inf, isinf, prod
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, Field, model_validator
+from pydantic import AfterValidator, Field, WrapValidator, model_validator
 
 from verification.cases.plausibility import (
     before,
@@ -33,12 +35,12 @@ from verification.cases.toml_file import (
     read_toml,
     spoken,
 )
-from verification.cases.unit_numbers import InSI, Metres, Newtons
+from verification.cases.unit_numbers import AnyMetres, InSI, Metres, Newtons
 from verification.judging.standard_claims import standard_claims
 from verification.judging.verdict import Claim
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.display_units import Units, prefixed
-from verification.problem.indenter_shape import Indenter
+from verification.problem.indenter_shape import Indenter, effective_radius
 from verification.problem.line_profile import line_of
 from verification.problem.point_answers import BALL, FLAT
 from verification.sources.load_of_approach import load_of_approach, own_radius
@@ -83,11 +85,28 @@ class Case:
     approach: float | None = None
 
 
+def _straight(given: Any, checked: Callable[[Any], float]) -> float:
+    """A radius of curvature, infinite of the word "flat"."""
+    if given == "flat":
+        return inf
+    value = checked(given)
+    if value == 0:
+        raise ValueError('a radius of curvature is not 0; "flat" has none')
+    return value
+
+
+Bend = Annotated[AnyMetres, WrapValidator(_straight)]  # negative of a concave surface
+
+
 class IndenterEntry(Strict):
-    """An indenter that is no sphere, see ``indenter_shape``."""
+    """An indenter that is no sphere, see ``indenter_shape``.
+
+    radii, against : radii of curvature along x and y of either body, negative where its surface is concave.
+    """
 
     shape: Literal["ellipsoid", "asperities", "lobes"]
-    radii: Annotated[list[Metres], Field(min_length=2, max_length=2)] | None = None
+    radii: Annotated[list[Bend], Field(min_length=2, max_length=2)] | None = None
+    against: Annotated[list[Bend], Field(min_length=2, max_length=2)] | None = None
     distance: Metres | None = None
     lobes: Annotated[int, Field(ge=2, le=6)] | None = None
     amplitude: Metres | None = None
@@ -97,15 +116,25 @@ class IndenterEntry(Strict):
     def _own_numbers(self) -> "IndenterEntry":
         own = {"ellipsoid": {"radii"}, "asperities": {"distance"}, "lobes": {"lobes", "amplitude", "at"}}
         given = {name for name in type(self).model_fields if getattr(self, name) is not None} - {"shape"}
+        given -= {"against"} if self.shape == "ellipsoid" else set()
         if given != own[self.shape]:
             raise ValueError(f"{self.shape} needs {', '.join(sorted(own[self.shape]))} and no other number")
+        if self.radii is not None:
+            for axis, *bends in zip("xy", self.radii, self.against or (inf, inf), strict=True):
+                if sum(1 / R for R in bends) <= 0:
+                    both = " and ".join("flat" if isinf(R) else f"{1e3 * R:g} mm" for R in bends)
+                    raise ValueError(
+                        f"has no gap that opens along {axis}, where the radii of curvature are {both}; a "
+                        "convex surface has a positive radius, a concave one around it a larger negative one"
+                    )
         return self
 
     @property
     def pair(self) -> Indenter:
         """Shape and numbers."""
         if self.radii is not None:
-            return self.shape, (self.radii[0], self.radii[1])
+            along, across = zip(self.radii, self.against or (inf, inf), strict=True)
+            return self.shape, (effective_radius(*along), effective_radius(*across))
         if self.distance is not None:
             return self.shape, (self.distance,)
         return self.shape, (float(self.lobes or 0), self.amplitude or 0.0, self.at or 0.0)
@@ -206,8 +235,9 @@ class _CaseProblem(Sized):
     def _under(self, load: float, over: int) -> CoatedContact:
         """The problem under a load; a thickness over a_h is that over the scale of both bodies uncoated."""
         ball, substrate = self.ball, (self.substrate.E, self.substrate.nu)
-        indenter, size = (self.indenter.pair, self.indenter.radii) if self.indenter else (None, None)
-        radius = float((size[0] * size[1]) ** 0.5) if size else self.size
+        indenter = self.indenter.pair if self.indenter else None
+        ellipsoid = indenter is not None and indenter[0] == "ellipsoid"
+        radius = float(prod(indenter[1]) ** 0.5) if indenter and ellipsoid else self.size
         uncoated = ball.bare if ball else None
         bare = CoatedContact(radius, load, (), substrate, self.friction, uncoated, indenter)
         given = ball.coated(bare.a_h, over) if ball else None

@@ -201,6 +201,7 @@ def _with_unit(unit: str) -> WrapValidator:
 
 
 Metres = Annotated[float, Field(gt=0), _with_unit("m")]
+AnyMetres = Annotated[float, _with_unit("m")]  # of either sign
 Pascals = Annotated[float, Field(gt=0), _with_unit("Pa")]
 AnyPascals = Annotated[float, _with_unit("Pa")]  # of either sign
 Newtons = Annotated[float, Field(gt=0), _with_unit("N")]

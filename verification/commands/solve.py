@@ -33,6 +33,7 @@ from verification.commands.common.terminal_bar import progress_bar, require_gmsh
 from verification.credibility.model_error import ModelError, model_error
 from verification.desk.case_wording import case_text
 from verification.desk.contact_answer import (
+    HALF_AXES,
     AnswerDifference,
     ContactAnswer,
     agreement,
@@ -55,6 +56,7 @@ from verification.desk.layer_limits import (
 from verification.desk.many_layers import many, worst_of_each
 from verification.desk.stack_text import body_label, described, outside_verified, stack, units_of
 from verification.judging.outcome import Outcome
+from verification.problem.coated_contact import CoatedContact
 from verification.problem.point_answers import FLAT
 from verification.problem.quantity import QUANTITIES
 from verification.regression.run_exit_codes import EXIT
@@ -74,6 +76,8 @@ def solve(
     /,
     *,
     ball: str | None = None,
+    radii: str | None = None,
+    against: str | None = None,
     load: str | None = None,
     approach: str | None = None,
     coating: Annotated[list[str] | None, Parameter(negative="")] = None,
@@ -97,6 +101,10 @@ def solve(
         file: A case file (.toml) or the name of a shipped case; or give the problem by options.
         ball: "RADIUS" of a rigid ball, "RADIUS, E, NU" of an elastic one: "10 mm, 210 GPa, 0.3"; the size may
             also be "d = DIAMETER".
+        radii: "R_X, R_Y" of a body that is no ball, such as "3.8 mm, 183 mm" of a roller with a crown; --ball
+            then is its solid alone, "210 GPa, 0.3" or "100Cr6". A concave surface has a negative radius.
+        against: "R_X, R_Y" of the body with the substrate where it is not flat: "18 mm, -4.9 mm" of a race
+            with its groove; "flat" along an axis without curvature.
         load: "20 N"; bare numbers are SI here and in all other options.
         approach: "0.5 um" in place of the load: of distant points of both bodies.
         coating: "THICKNESS, E, NU", such as "3 um, 450 GPa, 0.22"; once for each, from the surface down. A
@@ -113,7 +121,7 @@ def solve(
         force: Solve although a number looks like a slip of its unit.
     """
     begin = time.perf_counter()
-    given = (ball, load, approach, coating, substrate, friction, ball_coating)
+    given = (ball, radii, against, load, approach, coating, substrate, friction, ball_coating)
     case = _from_file(file, given) if file is not None else _from_options(*given, materials)
     if plot is not None:
         require_format(plot)
@@ -193,13 +201,17 @@ def _from_file(file: str, given: Sequence[Any]) -> Case:
     if any(one is not None for one in given):
         raise CommandError(f"{file}: give a file or the options of a problem, not both")
     case = read_case(path_of(file, default_cases(), SHIPPED))
-    if case.problem.indenter is not None:
-        raise CommandError(f"{file}: problem.indenter: solve answers for balls; try coatcheck run {file}")
+    if case.problem.indenter is not None and not case.problem.elliptical:
+        raise CommandError(
+            f"{file}: problem.indenter: solve answers for balls and ellipsoids; try coatcheck run {file}"
+        )
     return case
 
 
 def _from_options(
     ball: str | None,
+    radii: str | None,
+    against: str | None,
     load: str | None,
     approach: str | None,
     coating: list[str] | None,
@@ -208,12 +220,13 @@ def _from_options(
     ball_coating: list[str] | None,
     materials: Path,
 ) -> Case:
-    if ball is None or substrate is None or (load is None and approach is None):
-        asked = "--ball, --load or --approach, and --substrate"
+    unsized = ball is None and radii is None
+    if unsized or substrate is None or (load is None and approach is None):
+        asked = "--ball or --radii, --load or --approach, and --substrate"
         raise CommandError(f"give a case file, or {asked}; see coatcheck solve --help")
     try:
         layers = coating or [], friction or 0.0, ball_coating or []
-        text = case_text(ball, load, substrate, *layers, approach, materials)
+        text = case_text(ball, load, substrate, *layers, approach, materials, radii, against)
     except ValueError as error:
         raise CommandError(str(error)) from None
     return parse_case(text.encode("utf-8", errors="replace"), Path("options"))
@@ -274,13 +287,15 @@ def _print(
 
     shown_of = "" if every or not many(case) else "the worst of each material and interface; all with --all"
     numbers = _table(("contact", "unit"), ("value", "±", *more))
-    shown_in = (units.stress, f"± {units.stress}", f"x {units.length}", f"z {units.length}")
+    axes = "xyz" if case.problem.elliptical else "xz"
+    shown_in = (units.stress, f"± {units.stress}", *(f"{axis} {units.length}" for axis in axes))
     table = _table(("largest", "place"), (*shown_in, *(f"{head} {units.stress}" for head in more)))
     for name, (value, stated) in first.numbers.items():
-        pressure = QUANTITIES[name].unit == "Pa"
+        pressure = name not in HALF_AXES and QUANTITIES[name].unit == "Pa"
         unit, scale = (units.stress, units.pascal) if pressure else (units.length, units.metre)
         cells = [_value(value / scale, stated and stated / scale), _spread(stated, scale)]
-        numbers.add_row(QUANTITIES[name].symbol, unit, *cells, *checked((name,), scale))
+        symbol = HALF_AXES.get(name) or QUANTITIES[name].symbol
+        numbers.add_row(symbol, unit, *cells, *checked((name,), scale))
     body = FLAT
     for at in first.extremes if every else worst_of_each(case, first.extremes):
         if at.body != body:
@@ -288,7 +303,7 @@ def _print(
             body = at.body
         where = body_label(case.problem, at.body, at.where)
         key = (at.body, at.quantity, at.where)
-        rounded = (round(s / units.metre, decimals) + 0.0 for s in (at.x, at.z))  # no -0
+        rounded = (round(getattr(at, axis) / units.metre, decimals) + 0.0 for axis in axes)  # no -0
         places = ["-" if math.isnan(at.x) else f"{s:.{decimals}f}" for s in rounded]
         shown = [_value(at.value / units.pascal, at.uncertainty / units.pascal)]
         shown.append(_spread(at.uncertainty, units.pascal))
@@ -312,13 +327,22 @@ def _print(
         "",
         table,
         "",
-        "tension positive, in the plane y = 0, x along sliding, z into each body",
+        f"tension positive, in the plane{_planes(case.problem)}, z into each body",
         *filter(None, [shown_of]),
     )
     if modes:
         print_out("", _limits(case, modes if every else worst_of_each(case, modes)), "")
     if halved:
         print_out("± contains the slicing: at least the change by half the sub-layers, in the plane thrice")
+
+
+def _planes(problem: CoatedContact) -> str:
+    """The planes in which the largest stresses are found."""
+    if not problem.elliptical:
+        return " y = 0, x along sliding"
+    if problem.friction:
+        return " y = 0, x along sliding; across it, where the plane x = 0 has no symmetry, none is found"
+    return "s y = 0 and x = 0"
 
 
 def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:

@@ -4,15 +4,17 @@ The searches are those of the plane y = 0, where a sphere that slides along x ha
 
     sigma_1 = max(sigma_yy, (sigma_xx + sigma_zz)/2 + sqrt((sigma_xx - sigma_zz)^2/4 + sigma_xz^2))
 
-since sigma_xy = sigma_yz = 0 there by symmetry. An equibiaxial residual stress of a coating
+since sigma_xy = sigma_yz = 0 there by symmetry. Under an ellipsoid that does not slide the plane x = 0, which
+has the same symmetry, is searched too. An equibiaxial residual stress of a coating
 adds to sigma_xx, sigma_yy within it alone: the half-space below balances it at no stress. The tractions of an
 interface change near a free edge of the coating only, which is not part of this.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import accumulate
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +23,7 @@ from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.either_body import on_body
 from verification.problem.point_answers import BALL, Points
 from verification.problem.quantity import largest_shear, largest_strain, von_mises
+from verification.sampling.along_axis import AlongAxis
 from verification.sampling.largest_tension import Search
 from verification.study.friction_planes import (
     XX,
@@ -45,17 +48,19 @@ from verification.study.largest_stresses import (
 )
 
 REACH, POINTS = 2.0, 401  # of a course, over a
+ACROSS = {"sigma_xx": "sigma_yy", "|sigma_xz|": "|sigma_yz|"}  # a stress along x, and the same along y
 
 
 @dataclass(frozen=True)
 class Extreme:
     """The largest ``quantity`` at one place of a ``body``: ``value`` +- ``uncertainty`` [Pa] at x, z [m].
 
-    quantity : sigma_xx, |sigma_xz|, sigma_zz, sigma_1, von_mises, tau_max (half of Tresca's stress); strain,
-    the largest principal one in magnitude, which has no unit.   where : "surface", "base of coating 1",
-    "top of substrate", "interface 1", "coating 1" and the like.   x : along the sliding of the ball over the
-    flat; NaN with value 0 where a tensile stress is nowhere positive, in a layer without residual stress.
-    z : into the body.
+    quantity : sigma_xx, |sigma_xz|, across sigma_yy, |sigma_yz|, sigma_zz, sigma_1, von_mises, tau_max (half
+    of Tresca's stress); strain, the largest principal one in magnitude, which has no unit.   where :
+    "surface", "base of coating 1", "top of substrate", "interface 1", "coating 1" and the like.   x : along
+    the sliding of the ball over the flat; NaN with value 0 where a tensile stress is nowhere positive, in a
+    layer without residual stress.
+    z : into the body.   y : across, of a contact that is not round.
     """
 
     body: str
@@ -65,6 +70,7 @@ class Extreme:
     uncertainty: float
     x: float
     z: float
+    y: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,21 +102,50 @@ def stresses(
     layers : number of sub-layers of each coating by body, 1 unless given; they count as one coating.
     Raises what ``solution.stress`` raises.
     """
+    # an ellipsoid along x, and where it does not slide along y
+    axes = (False,) if problem.friction else (False, True)
+    ellipse = [AlongAxis(solution, across=across) for across in axes if problem.elliptical]
+    sides: list[Any] = [*ellipse] or [solution]
     found, drawn = [], []
+    searched: dict[tuple[object, ...], tuple[_Layers, list[list[tuple[str, str, Located]]]]] = {}
     for body in problem.bodies:
         seen, turned = problem.seen_from(body), -1.0 if body == BALL else 1.0
         sublayers = (layers or {}).get(body) or (1,) * len(seen.coatings)
-        layered = _Layers(on_body(solution, body), seen, (residual or {}).get(body, ()), sublayers)
-        for quantity, where, at in layered.extremes():
-            place = turned * at.x + 0.0  # no -0
-            found.append(Extreme(body, quantity, where, at.value, at.uncertainty, place, at.z))
-        x = np.linspace(-REACH, REACH, POINTS) * float(solution.contact_radius)
+        own = (residual or {}).get(body, ())
+        # two bodies of the same layers have the same stresses, each in its own frame
+        twin = (seen.coatings, seen.substrate, own, sublayers)
+        if twin not in searched:
+            views = [_Layers(on_body(side, body), seen, own, sublayers) for side in sides]
+            searched[twin] = views[0], [list(one.extremes()) for one in views]
+        layered, (along, *across) = searched[twin]
+        places = [  # without -0
+            Extreme(body, quantity, where, at.value, at.uncertainty, turned * at.x + 0.0, at.z)
+            for quantity, where, at in along
+        ]
+        for other in across:
+            beside = (
+                Extreme(body, quantity, where, at.value, at.uncertainty, 0.0 * at.x + 0.0, at.z, at.x)
+                for quantity, where, at in other
+            )
+            places = list(_of_both_planes(places, beside))
+        found += places
+        x = np.linspace(-REACH, REACH, POINTS) * float(sides[0].contact_radius)
         for where, line in layered.lines():
             stress = line(turned * x, seen.friction)
             stress[[XX, YY]] += layered.residual[line.layer]
             stress[XZ] *= turned
             drawn.append(StressCourse(body, where, x, stress))
     return tuple(found), tuple(drawn)
+
+
+def _of_both_planes(along: Iterable[Extreme], across: Iterable[Extreme]) -> Iterator[Extreme]:
+    """Largest stresses of the planes y = 0 and x = 0: of each component both, of any other the larger one."""
+    for one, other in zip(along, across, strict=True):
+        if one.quantity in ACROSS:
+            yield one
+            yield replace(other, quantity=ACROSS[one.quantity])
+        else:
+            yield max(one, other, key=lambda at: at.value)
 
 
 class _Layers:

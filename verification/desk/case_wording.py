@@ -43,7 +43,9 @@ _STATED = re.compile(
 )
 STATED = '"strength 2 GPa", "residual -1.5 GPa", "yield 3 GPa", "adhesion 400 MPa"'
 Solid = Callable[[str, str], tuple[str, list[str]]]
+SOLID = "--ball with --radii"  # the solid alone
 FORMS = {
+    SOLID: ("E", "nu", "100Cr6 210 GPa, 0.3"),
     "--ball": ("radius", "E", "nu", "100Cr6 d = 6 mm, 210 GPa, 0.3"),
     "--coating": ("thickness", "E", "nu", "DLC 3 um, 450 GPa, 0.22"),
     "--ball-coating": ("thickness", "E", "nu", "DLC 3 um, 450 GPa, 0.22"),
@@ -52,7 +54,7 @@ FORMS = {
 
 
 def case_text(
-    ball: str,
+    ball: str | None,
     load: str | None,
     substrate: str,
     coatings: Sequence[str] = (),
@@ -60,21 +62,40 @@ def case_text(
     on_ball: Sequence[str] = (),
     approach: str | None = None,
     materials: Path = SHIPPED,
+    radii: str | None = None,
+    against: str | None = None,
 ) -> str:
     """The case file of a problem in words; coatings from the surface of each body inwards.
 
     approach : in place of the load, which then is None.   materials : the file of those given by name alone.
+    radii, against : of curvature, along x and y, of either body; the ball then is a solid alone, or rigid.
     Raises ValueError where the number of words is wrong, naming the option.
     """
     used: dict[str, str] = {}
     solid = partial(_solid, materials=materials, used=used)
     coated, elastic = ", ".join(_layers("--ball-coating", text, solid) for text in on_ball), ""
-    key, size = _size(ball)
-    if "," in ball or on_ball or _named(ball.strip())[0]:
+    sized = None
+    if radii is not None:
+        bends = [("radii", _bends("--radii", radii))]
+        bends += [("against", _bends("--against", against))] if against is not None else []
+        entries = ", ".join(f"{key} = [{', '.join(map(_toml, words))}]" for key, words in bends)
+        sized = f'indenter = {{ shape = "ellipsoid", {entries} }}'
+        if ball is not None:
+            called, (E, nu) = solid(SOLID, ball)
+            elastic = f"ball = {{ {called}E = {_toml(E)}, nu = {_toml(nu)}, coatings = [{coated}] }}\n"
+        elif on_ball:
+            raise ValueError(f'--ball-coating "{on_ball[0]}": give the solid below it too, --ball "E, NU"')
+    elif against is not None:
+        raise ValueError(f'--against "{against}": give the radii of the other body too, --radii "R_x, R_y"')
+    elif ball is None:
+        raise ValueError("give --ball or --radii")
+    elif "," in ball or on_ball or _named(ball.strip())[0]:
         called, (size, *words) = solid("--ball", ball)
         E, nu = map(_toml, words)
         elastic = f"ball = {{ {called}E = {E}, nu = {nu}, coatings = [{coated}] }}\n"
-        key, size = _size(size)
+        sized = _sized(size)
+    else:
+        sized = _sized(ball)
     called, words = solid("--substrate", substrate)
     E, nu = map(_toml, words)
     on = ", ".join(_layers("--coating", text, solid) for text in coatings)
@@ -85,7 +106,7 @@ def case_text(
     source = f"source = {json.dumps(told, ensure_ascii=False)}\n" if used else ""
     return (
         f'title = "From the command line"\n{source}[problem]\n'
-        f"{key} = {_toml(size)}\n{pressed}friction = {friction!r}\n"
+        f"{sized}\n{pressed}friction = {friction!r}\n"
         f"substrate = {{ {called}E = {E}, nu = {nu} }}\n{elastic}coatings = [{on}]\n"
     )
 
@@ -97,6 +118,21 @@ def _size(word: str) -> tuple[str, str]:
         return "radius", word
     said = found[1] or found[3] or "r"
     return ("diameter" if re.fullmatch(_D, said) else "radius"), found[2]
+
+
+def _sized(word: str) -> str:
+    """The line of a case file that states a ball's size."""
+    key, size = _size(word)
+    return f"{key} = {_toml(size)}"
+
+
+def _bends(option: str, text: str) -> list[str]:
+    """Both radii of curvature of a body."""
+    words = [word.strip() for word in text.split(",")]
+    if len(words) != 2:
+        comma = "; write decimals with a point, such as 0.3" if _COMMA.search(text) else ""
+        raise ValueError(f'{option} "{text}": give R_x, R_y, 2 parts, such as "3.8 mm, 183 mm"{comma}')
+    return words
 
 
 def _named(word: str) -> tuple[str, str]:

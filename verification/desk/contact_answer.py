@@ -15,10 +15,13 @@ from verification.problem.coated_contact import CoatedContact
 from verification.problem.point_answers import FLAT
 from verification.problem.quantity import SCALARS
 from verification.running.slicing import sliced
+from verification.sampling.along_axis import AlongAxis
 from verification.sources.source_registry import solvers
 
 # Measured on one core of 2.5 GHz, an elastic ball with two thin films within 5 %.
 BODY_SECONDS, FILM_SECONDS, THIN = 4.0, 8.0, 0.1
+
+HALF_AXES = {"half_axis_x": "a_x", "half_axis_y": "a_y"}  # of an ellipse, by their symbols
 
 Names = Mapping[str, tuple[str, ...]]  # of the coatings of each body, see ``Case``
 
@@ -64,6 +67,12 @@ def answer(
     begin = time.perf_counter()
     solution = solvers()[source](problem, numerics or {})
     numbers = {name: tuple(solution.sample(None, name)) for name in SCALARS}
+    if problem.elliptical:
+        sides = (AlongAxis(solution, across=across) for across in (False, True))
+        numbers |= {
+            name: tuple(side.sample(None, "contact_radius"))
+            for name, side in zip(HALF_AXES, sides, strict=True)
+        }
     found, drawn = stresses(solution, problem, residual, layers)
     strains = tuple(at for at in found if at.quantity == "strain")
     extremes = tuple(at for at in found if at.quantity != "strain")
@@ -195,6 +204,9 @@ def place_of(at: Any, problem: CoatedContact, sliding: bool) -> str:
         return f"{_three_digits(value / units.metre)} {units.length}"
 
     depth = "at its surface" if at.z == 0 else f"at z = {length(at.z)}"
+    across = getattr(at, "y", 0.0)
+    if abs(across) >= ON_AXIS * problem.a_h:
+        return f"{depth}, {length(abs(across))} across from the axis"
     if isnan(at.x) or abs(at.x) < ON_AXIS * problem.a_h:
         return f"{depth} on the axis"
     side = ("behind" if at.x < 0 else "ahead of") if sliding else "from"

@@ -30,6 +30,7 @@ MODES = {
     "von_mises": ("yields", "yield_strength", "von Mises stress"),
     "sigma_1": ("cracks", "strength", "first principal stress"),
     "|sigma_xz|": ("shears off", "adhesion", "shear stress"),
+    "|sigma_yz|": ("shears off", "adhesion", "shear stress"),
     "sigma_zz": ("lifts off", "adhesion", "tension"),
 }
 
@@ -41,7 +42,8 @@ class LayerMode:
     """One way to fail: the largest ``stress`` [Pa] of its quantity at a place, and the ``strength`` there.
 
     body, where, quantity : as of ``Extreme``.   load : at which they are equal [N], 0 where the residual
-    stress alone is enough, None where it was not found.   x, z : place of the stress at about that load [m].
+    stress alone is enough, None where it was not found.   x, y, z : place of the stress at about that load
+    [m].
     """
 
     body: str
@@ -52,6 +54,7 @@ class LayerMode:
     load: float | None
     x: float
     z: float
+    y: float = 0.0
 
     @property
     def utilisation(self) -> float:
@@ -106,8 +109,10 @@ def designed(case: Case, source: str) -> Designed | None:
     """
     if not (case.residual or case.limits):
         return None
-    if case.problem.indenter is not None:
-        return Designed("Largest stresses with residual stress, and strengths, are found under balls alone.")
+    if case.problem.indenter is not None and not case.problem.elliptical:
+        return Designed(
+            "Largest stresses with residual stress, and strengths, are for balls and ellipsoids alone."
+        )
     first = answer(case.problem, source, case.numerics.get(source), case.residual, case.layers)
     modes = modes_of(case, first)
     told = limit_warnings(case, first, modes)
@@ -231,7 +236,7 @@ def layer_modes(
         load = _load_of(use, known, rest.get(place, 0.0) / strength) if loads else None
         nearest = min(known, key=lambda one: abs(log(one / (load or problem.load))))
         there = known[nearest][place]
-        found.append(LayerMode(*place, at.value, strength, load, there.x, there.z))
+        found.append(LayerMode(*place, at.value, strength, load, there.x, there.z, there.y))
     return tuple(found)
 
 

@@ -23,7 +23,8 @@ def stack(case: Case) -> str:
     """The layers from the ball to the substrate: "ball / DLC 2 um / Cr 0.2 um / steel"."""
     problem = case.problem
     found = [case.names.get(BALL, ("",))[-1]]
-    found = [f"{found[0]} ball".strip() if problem.ball else "rigid ball"]
+    kind = "ball" if problem.indenter is None else "indenter"
+    found = [f"{found[0]} {kind}".strip() if problem.ball else f"rigid {kind}"]
     if problem.ball:
         found += reversed(_layers(case, BALL))
     base = case.names.get(FLAT, ("",))[-1]
@@ -57,8 +58,10 @@ def described(case: Case, *, every: bool = True) -> list[str]:
     """The problem, a line for each body, load and coating; of equal coatings the first, unless ``every``."""
     problem, units = case.problem, units_of(case.problem)
     kind = "rigid" if problem.ball is None else _solid(*problem.ball[:2])
-    size = f"R = {prefixed(problem.radius, 'm')} (diameter {prefixed(2 * problem.radius, 'm')}), {kind}"
-    lines = [f"ball        {size}; {_pressed(problem, units)}"]
+    size = f"indenter    {_size(problem)}"
+    if not problem.elliptical:
+        size = f"ball        {_size(problem)} (diameter {prefixed(2 * problem.radius, 'm')})"
+    lines = [f"{size}, {kind}; {_pressed(problem, units)}"]
     if case.approach is not None:
         lines.append(
             f"            W is the load of the given approach of {units.shown_length(case.approach)}"
@@ -89,7 +92,15 @@ def described(case: Case, *, every: bool = True) -> list[str]:
 
 def conditions(problem: CoatedContact) -> str:
     """Ball, load and friction in one line."""
-    return f"R = {prefixed(problem.radius, 'm')}, {_pressed(problem, units_of(problem))}"
+    return f"{_size(problem)}, {_pressed(problem, units_of(problem))}"
+
+
+def _size(problem: CoatedContact) -> str:
+    """The radius, or those of the gap along x and y."""
+    if problem.indenter is None or not problem.elliptical:
+        return f"R = {prefixed(problem.radius, 'm')}"
+    along, across = (prefixed(R, "m") for R in problem.indenter[1])
+    return f"R_x = {along}, R_y = {across}"
 
 
 def units_of(problem: CoatedContact) -> Units:

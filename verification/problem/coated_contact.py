@@ -116,6 +116,11 @@ class CoatedContact:
         return coupled / 2 / (one[0] * (1 - one[1]) + two[0] * (1 - two[1]))
 
     @property
+    def elliptical(self) -> bool:
+        """Whether the indenter is an ellipsoid, whose contact has half axes along x and y."""
+        return self.indenter is not None and self.indenter[0] == "ellipsoid"
+
+    @property
     def interfaces(self) -> tuple[float, ...]:
         """Depth of each interface [m], from the surface down."""
         return tuple(float(z) for z in np.cumsum([thickness for _, _, thickness in self.coatings]))

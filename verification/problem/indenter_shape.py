@@ -1,7 +1,7 @@
 """Indenters that are no spheres: an ellipsoid, two asperities, a lobed sphere, all even in y."""
 
 from collections.abc import Callable
-from math import isfinite
+from math import isfinite, isinf
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,11 @@ def require_shape(indenter: Indenter) -> None:
     for name, value in zip(SHAPES[shape], numbers, strict=True):
         if not (isfinite(value) and (value > 0 or name == "amplitude")):
             raise ValueError(f"indenter.{name} = {value:g}; it must be a positive finite number")
+
+
+def effective_radius(one: float, other: float) -> float:
+    """Radius of the gap of two surfaces along one axis, 1/R = 1/R_1 + 1/R_2; negative where concave."""
+    return one if isinf(other) else 1 / (1 / one + 1 / other)
 
 
 def height_of(indenter: Indenter | None, radius: float) -> Callable[[Any, Any], Any]:

@@ -59,6 +59,7 @@ GRADED = '{ course = "linear", top = 4e11, base = 2e11 }'
 TABLE = "{ depth = [0.0, 0.5, 1.0], E = [4e11, 3e11, 2e11] }"
 LAYERS = {"problem.coatings.layers": "4"}
 ELLIPSE = {"problem.ball": None, "problem.radius": None, "problem.indenter.shape": '"ellipsoid"'}
+BENT = {"problem.indenter.radii": "[5e-3, 6e-3]"}
 LOBES = {"problem.ball": None, "problem.indenter.shape": '"lobes"', "problem.indenter.lobes": "3"}
 LOBES |= {"problem.indenter.amplitude": "1e-9", "problem.indenter.at": "1e-5"}
 SPHERES = {"problem.ball": None, "problem.indenter.shape": '"asperities"'}
@@ -76,6 +77,7 @@ KEYS = {
     "problem.temperature_change": (THERMAL, "-300", "-400"),
     "problem.indenter.shape": (SPHERES | {"problem.indenter.distance": "1e-5"}, None, '"asperities"'),
     "problem.indenter.radii": (ELLIPSE, "[5e-3, 6e-3]", "[5e-3, 7e-3]"),
+    "problem.indenter.against": (ELLIPSE | BENT, "[1e-2, -7e-3]", "[1e-2, -8e-3]"),
     "problem.indenter.distance": (SPHERES, "1e-5", "2e-5"),
     "problem.indenter.lobes": (LOBES, "3", "4"),
     "problem.indenter.amplitude": (LOBES, "1e-9", "2e-9"),
