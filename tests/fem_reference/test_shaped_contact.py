@@ -3,11 +3,14 @@
 import numpy as np
 import pytest
 
+import semianalytic
 from fem_reference import NotConverged, solve_shape
 from fem_reference.not_round.harmonic_compliance import HarmonicCompliance
 from fem_reference.not_round.indenter_height import touching_shape
+from verification.problem.coated_contact import CoatedContact
 from verification.problem.indenter_shape import height_of
 from verification.problem.point_answers import EDGE, Points
+from verification.sources.method_sources import solve_elements, solve_semianalytic
 from verification.sources.references.hertz_ellipse import pressed_ellipsoid
 
 STEEL = (210e9, 0.3)
@@ -60,11 +63,29 @@ def test_the_start_is_forgotten(indenter):
 
 def test_an_error_of_the_matrix_moves_the_contact(monkeypatch):
     """A matrix 1e-3 too large is a modulus as much too small: p0 ~ E*^(2/3), approach ~ E*^(-2/3)."""
-    right, exact = solved(), HarmonicCompliance.matrices.func
+    right, exact = solved(estimate_uncertainty=True), HarmonicCompliance.matrices.func
     monkeypatch.setattr(HarmonicCompliance, "matrices", property(lambda one: 1.001 * exact(one)))
     wrong = solved()
     assert wrong.peak_pressure / right.peak_pressure == pytest.approx(1.001 ** (-2 / 3), abs=2e-5)
     assert wrong.approach / right.approach == pytest.approx(1.001 ** (2 / 3), abs=2e-5)
+    for name, closed in (("peak_pressure", EXACT.peak_pressure), ("approach", EXACT.approach)):
+        value, U = right.sample(None, name)
+        assert abs(value - closed) <= U < abs(wrong.sample(None, name).value - closed), name
+
+
+def test_an_error_of_the_patches_is_none_of_the_elements(monkeypatch):
+    """A modulus of the patches 1.5e-3 too large is a consistent error of 1e-3 p0: both methods disagree."""
+    right = semianalytic.solve
+
+    def wrong(substrate, **given):
+        return right(substrate=(1.0015 * substrate[0], substrate[1]), **given)
+
+    monkeypatch.setattr(semianalytic, "solve", wrong)
+    problem = CoatedContact(float(np.prod(RADII) ** 0.5), LOAD, (), STEEL, indenter=("ellipsoid", RADII))
+    solutions = solve_semianalytic(problem), solve_elements(problem, QUICK | {"estimate_uncertainty": True})
+    (p, U), (q, V) = (one.sample(None, "peak_pressure") for one in solutions)
+    assert p / q - 1 == pytest.approx(1e-3, rel=0.2)
+    assert abs(p - q) > U + V
 
 
 def test_two_elastic_bodies_meet_as_one_of_both_compliances():
