@@ -115,8 +115,13 @@ class Body:
         coated = [(self.contact_modulus / one.moduli[0], one.layers) for one in self.pair if one.coatings]
         return response(coated) if coated else None
 
+    @cached_property
+    def tables(self) -> dict[Any, Any]:
+        """The last tables of point forces, by what they were made for: planes of one depth share them."""
+        return {}
+
     def __getstate__(self) -> dict[str, Any]:
-        # pickled without the response, which is found again on use
+        # pickled without response and tables, which are found again on use
         return {one.name: getattr(self, one.name) for one in fields(self)}
 
     @property

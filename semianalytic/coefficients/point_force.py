@@ -39,6 +39,7 @@ from semianalytic.inputs import Body
 Array = NDArray[Any]
 Response = Callable[[Load], Array]
 
+KEPT = 4  # tables of a body, of up to 14 depths and 9 MB each
 _INNER = np.linspace(0, NEAR, 60, endpoint=False)  # r / L of the table, as dense as beyond
 
 
@@ -77,7 +78,11 @@ def _tables(
     excess: bool,
     over_k: bool,
 ) -> list[PointForce]:
-    """Splines through the radial functions, at scale times ``_INNER`` and all radii beyond."""
+    """Splines through the radial functions, at scale times ``_INNER`` and all radii beyond; some are kept."""
+    key = (frf.__name__, body.friction, z.tobytes(), layer, scale, excess)
+    if key in body.tables:
+        found: list[PointForce] = body.tables[key]
+        return found
     # a film E, h stretches on a base E' over a length h E/E', bends over less
     moduli = [material[0] for material in body.materials]
     grid = USUAL if sum(body.thickness) * max(moduli) / min(moduli) / scale < 1e4 else LONG
@@ -89,7 +94,11 @@ def _tables(
         outer = hankel(F, order, scale, over_k=over_k, grid=grid)[:, beyond]
         radial.append(np.concatenate([inner, outer], axis=1))
     nodes = np.arcsinh(np.concatenate([_INNER, grid.radii[beyond]]))
-    return [PointForce(CubicSpline(nodes, table), scale) for table in np.stack(radial, axis=-1)]
+    found = [PointForce(CubicSpline(nodes, table), scale) for table in np.stack(radial, axis=-1)]
+    while len(body.tables) >= KEPT:
+        del body.tables[next(iter(body.tables))]
+    body.tables[key] = found
+    return found
 
 
 def stress_columns(response: Response, friction: float) -> list[tuple[Array, int]]:

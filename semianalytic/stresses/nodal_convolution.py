@@ -13,13 +13,18 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import irfft2, next_fast_len, rfft2
+from scipy.fft import irfft, irfft2, next_fast_len, rfft, rfft2
+from scipy.special import erfc
 
 Array = NDArray[Any]
 Influence = Callable[[Array, Array], Array]  # of integer offsets (m, n), each (k,) -> (components, k)
 
 PAIRS = 200_000  # points times forces, or offsets, held at a time
 FEW = 32  # sites for which direct summation is faster than Fourier transforms
+COLUMNS = 10  # of sites, for which one transform along x each is faster than one in the plane
+WIDE = 400  # forces a side, from which distant ones are gathered ``GATHERED`` times: on 8 times the spacing
+GATHERED = 3
+SPLIT, BLEND = 18.0, 3.0  # distance, in the wider spacing, from which forces are distant; width of the change
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,16 +104,60 @@ def at_points(
     return np.concatenate(parts, axis=1)
 
 
-def between_sites(
-    x: Array, y: Array, lattice: Lattice, influence: Influence, odd_in_y: Sequence[int], *, order: int
+def near_and_far(
+    x: Array,
+    y: Array,
+    lattices: Sequence[Lattice],
+    influence: Influence,
+    kernel: Callable[[Array, Array], Array],
+    odd_in_y: Sequence[int],
+    *,
+    order: int,
 ) -> Array:
-    """The convolution at the sites around each point, interpolated by polynomials through ``order`` sites."""
+    """Sum over all forces at points: over nearby ones by ``influence``, over distant ones by ``kernel``.
+
+    lattices : that of the forces, the one on which they are gathered.   Others as in ``between_sites`` and
+    ``at_points``. The share of the nearby ones falls over ``BLEND`` of the wider spacing; interpolated, it
+    leaves 5e-7 of the sum, which is that of what a smooth pressure leaves over, below 1e-3 of the peak.
+    """
+    near, far = lattices
+    dx, dy = near.dx, near.dy
+
+    def share(x: Array, y: Array) -> Array:
+        return np.asarray(erfc((np.hypot(x, y) / far.dx - SPLIT) / BLEND) / 2)
+
+    def nearby(m: Array, n: Array) -> Array:
+        return influence(m, n) * share(m * dx, n * dy)
+
+    def distant(x: Array, y: Array) -> Array:
+        rest = 1 - share(x, y)
+        return kernel(np.where(rest > 0, x, far.dx), y) * rest  # a force at the point itself has no share
+
+    reach = (SPLIT + 5 * BLEND) * far.dx / dx
+    found = between_sites(x, y, near, nearby, odd_in_y, order=order, reach=reach)
+    return found + at_points(x, y, far, distant, odd_in_y, order=10)
+
+
+def between_sites(
+    x: Array,
+    y: Array,
+    lattice: Lattice,
+    influence: Influence,
+    odd_in_y: Sequence[int],
+    *,
+    order: int,
+    reach: float = np.inf,
+) -> Array:
+    """The convolution at the sites around each point, interpolated by polynomials through ``order`` sites.
+
+    reach : offset along x or y from which there is no influence.
+    """
     i, wx = _stencil((x - lattice.x0) / lattice.dx, order)
     j, wy = _stencil((y - lattice.y0) / lattice.dy, order)
     weight = wx[:, :, None] * wy[:, None, :]
     point, a, b = np.nonzero(weight)
     sites, inverse = np.unique(np.stack([i[point, a], j[point, b]]), axis=1, return_inverse=True)
-    field = _at_sites(sites, lattice, influence, odd_in_y)
+    field = _at_sites(sites, lattice, influence, odd_in_y, reach)
     contribution = field[:, inverse.ravel()] * weight[point, a, b]
     return np.array([np.bincount(point, part, minlength=x.size) for part in contribution])
 
@@ -127,35 +176,82 @@ def _stencil(s: Array, order: int) -> tuple[Array, Array]:
     return first[:, None] + np.arange(order), weights
 
 
-def _at_sites(sites: Array, lattice: Lattice, influence: Influence, odd_in_y: Sequence[int]) -> Array:
-    """The convolution at lattice sites (2, k): term by term for a few, by FFT for many."""
+def _at_sites(
+    sites: Array, lattice: Lattice, influence: Influence, odd_in_y: Sequence[int], reach: float
+) -> Array:
+    """The convolution at lattice sites (2, k): along x alone where they lie in a few columns, or by FFT."""
     force = lattice.force
+    columns, column = np.unique(sites[1], return_inverse=True)
     low, high = sites.min(axis=1), sites.max(axis=1)
     m = np.arange(low[0] - (force.shape[0] - 1), high[0] + 1)
+    if columns.size <= COLUMNS:
+        m = m[np.abs(m) <= reach] if np.abs(m).min() <= reach else m[:1]
+        n = np.arange(1 + min(np.abs(columns[:, None] - [0, force.shape[1] - 1]).max(), reach))
+        table = influence_table(influence, m, n, ())
+        return _along_columns(table, sites[0] - m[0], force, columns, column, odd_in_y)
     n = np.arange(low[1] - (force.shape[1] - 1), high[1] + 1)
-    table = influence_table(influence, m, n, odd_in_y)
-    if sites.shape[1] <= FEW:
-        out = np.empty((len(table), sites.shape[1]))
-        flipped = force[::-1, ::-1]
-        for c, (i, j) in enumerate((sites - low[:, None]).T):
-            out[:, c] = np.tensordot(table[:, i : i + force.shape[0], j : j + force.shape[1]], flipped, 2)
-        return out
+    table = influence_table(influence, m, n, odd_in_y, reach)
     size = (next_fast_len(m.size, real=True), next_fast_len(n.size, real=True))
     spectrum = rfft2(force, size)
     i, j = sites - low[:, None] + np.array(force.shape)[:, None] - 1
     return np.array([irfft2(rfft2(part, size) * spectrum, size)[i, j] for part in table])
 
 
-def influence_table(influence: Influence, m: Array, n: Array, odd_in_y: Sequence[int]) -> Array:
-    """Influence at the offsets m x n, computed for n >= 0 and mirrored; (components, len(m), len(n))."""
-    distinct, where = np.unique(np.abs(n), return_inverse=True)
-    mm, nn = np.meshgrid(m, distinct, indexing="ij")
+def _along_columns(
+    table: Array, at: Array, force: Array, columns: Array, column: Array, odd_in_y: Sequence[int]
+) -> Array:
+    """The convolution with the influence at offsets n >= 0 alone: forces either side of a column are folded.
+
+    table : (components, offsets along x, n).   at, column : of each site, in the convolution and ``columns``.
+    """
+    n, rows, length = np.arange(table.shape[2]), force.shape[0], table.shape[1]
+    padded = np.pad(force, ((0, 0), (2 * n.size, 2 * n.size)))
+    size = next_fast_len(rows + length - 1, real=True)
+    spectra: dict[int, Array] = {}
+    out = np.zeros((len(table), at.size))
+    for number, j in enumerate(columns + 2 * n.size):
+        here = np.flatnonzero((column == number) & (at >= 0) & (at < rows + length - 1))
+        left, right = padded[:, j - n], padded[:, j + n] * (n > 0)
+        for odd, folded in ((False, left + right), (True, left - right)):
+            components = [c for c in range(len(table)) if (c in odd_in_y) is odd]
+            if not folded.any():  # a symmetric pressure has no odd components on its axis
+                continue
+            if at.size <= FEW:
+                for k in here:
+                    last, first = min(rows - 1, at[k]), max(0, at[k] - length + 1)
+                    near = table[components, at[k] - last : at[k] - first + 1]
+                    out[components, k] = np.tensordot(near, folded[first : last + 1][::-1], 2)
+                continue
+            spectrum = rfft(folded, size, axis=0)
+            for c in components:
+                if c not in spectra:
+                    spectra[c] = rfft(table[c], size, axis=0)
+                out[c, here] = irfft((spectra[c] * spectrum).sum(axis=1), size)[at[here]]
+    return out
+
+
+def influence_table(
+    influence: Influence, m: Array, n: Array, odd_in_y: Sequence[int], reach: float = np.inf
+) -> Array:
+    """Influence at the offsets m x n, computed for n >= 0 and mirrored; (components, len(m), len(n)).
+
+    reach : 0 for offsets beyond it.
+    """
+    mine = np.flatnonzero(np.abs(m) <= reach)
+    distinct, where = np.unique(np.minimum(np.abs(n), reach + 1).astype(int), return_inverse=True)
+    distinct = distinct[distinct <= reach]
+    if not mine.size or not distinct.size:
+        return np.zeros((len(influence(m[:1], n[:1])), m.size, n.size))
+    mm, nn = np.meshgrid(m[mine], distinct, indexing="ij")
     rows = max(1, PAIRS // distinct.size)
     blocks = [
         influence(a.ravel(), b.ravel()).reshape(-1, *a.shape)
-        for a, b in ((mm[i : i + rows], nn[i : i + rows]) for i in range(0, m.size, rows))
+        for a, b in ((mm[i : i + rows], nn[i : i + rows]) for i in range(0, mine.size, rows))
     ]
-    table: Array = np.take(np.concatenate(blocks, axis=1), where, axis=2)
+    found = np.concatenate(blocks, axis=1)
+    table = np.zeros((len(found), m.size, n.size))
+    inside = where < distinct.size
+    table[:, mine[0] : mine[-1] + 1, inside] = found[:, :, where[inside]]
     for component in odd_in_y:
         table[component] *= np.where(n < 0, -1.0, 1.0)
     return table

@@ -26,11 +26,14 @@ from scipy.fft import irfft2, next_fast_len, rfft2
 from semianalytic.inputs import Body
 from semianalytic.stresses import subsurface
 from semianalytic.stresses.nodal_convolution import (
+    GATHERED,
+    WIDE,
     Influence,
     Lattice,
     at_points,
     between_sites,
     influence_table,
+    near_and_far,
     nodal_forces,
     samples,
 )
@@ -193,11 +196,28 @@ def _fields(
 ) -> Iterator[Callable[[Array, Array], Array]]:
     """For each depth of one layer, the field as a function of x and y, (k,) -> (components, k)."""
     fine = lattices[0]
+    odd = field.odd_in_y
     for z, (influence, kernel) in zip(depths, field.influences(depths, layer, fine.dx), strict=True):
-        if z < SHALLOW * fine.dx:
-            yield partial(between_sites, lattice=fine, influence=influence, odd_in_y=field.odd_in_y, order=4)
-        else:
-            level = int(np.clip(np.log2(max(z / (COARSE * fine.dx), 1)), 0, len(lattices) - 1))
+        level = int(np.clip(np.log2(max(z / (COARSE * fine.dx), 1)), 0, len(lattices) - 1))
+        lattice, shallow = lattices[level], z < SHALLOW * fine.dx
+        if max(lattice.force.shape) > WIDE:
+            pair = lattice, lattices[level + GATHERED]
+            if level:
+                influence = partial(_of_lattice, kernel, lattice.dx)
             yield partial(
-                at_points, lattice=lattices[level], kernel=kernel, odd_in_y=field.odd_in_y, order=10
+                near_and_far,
+                lattices=pair,
+                influence=influence,
+                kernel=kernel,
+                odd_in_y=odd,
+                order=4 if shallow else 10,
             )
+        elif shallow:
+            yield partial(between_sites, lattice=fine, influence=influence, odd_in_y=odd, order=4)
+        else:
+            yield partial(at_points, lattice=lattice, kernel=kernel, odd_in_y=odd, order=10)
+
+
+def _of_lattice(kernel: Callable[[Array, Array], Array], d: float, m: Array, n: Array) -> Array:
+    """``kernel`` at integer offsets on a lattice of spacing ``d`` [m]."""
+    return kernel(m * d, n * d)

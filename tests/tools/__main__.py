@@ -22,6 +22,7 @@ app.command("trade:trade")
 app.command("enclosures_made.certify:certify")
 app.command("code_checked.checking:code")
 app.command("method_constants:constants")
+app.command("guest_records:guests")
 
 if __name__ == "__main__":
     sys.exit(app(result_action="return_value"))

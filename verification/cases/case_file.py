@@ -1,6 +1,6 @@
 """A case: one coated contact with the claims about it, read from a TOML file."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from math import inf, isinf, prod
 from pathlib import Path
@@ -83,6 +83,10 @@ class Case:
     courses: dict[str, tuple[str, ...]] = field(default_factory=dict)
     remarks: tuple[str, ...] = ()
     approach: float | None = None
+
+    def sublayers(self, body: str) -> tuple[int, ...]:
+        """Number of sub-layers of each coating of a body."""
+        return self.layers.get(body) or (1,) * len(self.problem.seen_from(body).coatings)
 
 
 def _straight(given: Any, checked: Callable[[Any], float]) -> float:
@@ -343,6 +347,23 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
         diameter_remark(checked.problem.radius),
         checked.problem.approach,
     )
+
+
+def with_moduli(case: Case, moduli: Mapping[tuple[str, int], float]) -> Case:
+    """``case`` with other moduli [Pa] by body and number of the coating, the last of which is the body."""
+    _, checked = read_toml(case.text.encode(), Path(case.name), _CaseFile)
+    parts: dict[str, Any] = {}
+    for body, (solid, coatings) in checked.problem.bodies.items():
+        every: list[Any] = [*coatings, solid]
+        *layers, base = (
+            one.model_copy(update={"E": moduli.get((body, i), one.E)}) for i, one in enumerate(every)
+        )
+        if body == BALL:
+            parts["ball"] = base.model_copy(update={"coatings": layers})
+        else:
+            parts |= {"coatings": layers, "substrate": base}
+    problem = checked.problem.model_copy(update=parts)
+    return replace(case, problem=problem.contact(), residual=problem.residual())
 
 
 def refuse_unfit_scales(path: Path, problem: CoatedContact, pressed: str = "load") -> None:

@@ -16,7 +16,7 @@ SHIPPED = Path(__file__).parent / "shipped" / "materials" / "materials.toml"
 class KnownMaterial(Strict):
     """Typical ``E`` [Pa] and ``nu`` of a material, by ``name`` or one of its other names.
 
-    low, high : range of E [Pa] that the ``source`` gives.
+    low, high : range of E [Pa] that the ``source`` gives.   checked : values that were compared with it.
     """
 
     name: Text
@@ -27,6 +27,7 @@ class KnownMaterial(Strict):
     high: Pascals | None = None
     yield_strength: Pascals | None = None
     source: Text
+    checked: Text = "no"
     note: Text = "-"
 
     @model_validator(mode="after")
@@ -45,7 +46,8 @@ class KnownMaterial(Strict):
     def told(self) -> str:
         """The values that are used, in words, with their source."""
         between = f", {self.range}" if self.range else ""
-        return f"{self.name} E = {prefixed(self.E, 'Pa')}{between}, nu = {self.nu:g} ({self.source})"
+        doubt = ", not compared with it" if self.checked == "no" else ""
+        return f"{self.name} E = {prefixed(self.E, 'Pa')}{between}, nu = {self.nu:g} ({self.source}{doubt})"
 
 
 class _Materials(Strict):

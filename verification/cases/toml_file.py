@@ -214,7 +214,7 @@ def worded(one: Any, *, shown: bool = True) -> str:
             text += "; write decimals with a point, without quotation marks"
         elif given.strip().endswith("%"):
             text += "; 10 % is 0.1"
-        elif _is_number(given):
+        elif is_number(given):
             text += "; leave out the quotation marks"
         elif re.match(r"\s*[+-]?[\d.]+", given):
             text += " without a unit"
@@ -222,7 +222,8 @@ def worded(one: Any, *, shown: bool = True) -> str:
     return "; ".join([f"{what}, not {_shown(given)}", *hints])
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
+    """Whether a text is a bare number."""
     try:
         float(text)
     except ValueError:

@@ -2,6 +2,7 @@
 
 import time
 from concurrent.futures import ProcessPoolExecutor
+from importlib.util import find_spec
 from multiprocessing import get_context
 from pathlib import Path
 
@@ -32,11 +33,13 @@ def compare_coatings(
     The exit code is 3 where a row could not be solved.
 
     Args:
-        file: CSV with the columns name, ball, load, substrate, friction, coating 1, coating 2, ..., in the
-            words of coatcheck solve: "TiN 2 um, 450 GPa, 0.25, strength 2 GPa, adhesion 400 MPa".
-        output: Directory of coatings.csv and coatings.html.
+        file: CSV or XLSX with the columns name, ball, load, substrate, friction, coating 1, coating 2, ... in
+            the words of coatcheck solve: "TiN 2 um, 450 GPa, 0.25, strength 2 GPa, adhesion 400 MPa"; or a
+            column for each number, such as coating 1 E [GPa].
+        output: Directory of coatings.csv, coatings.html and, where openpyxl is installed, coatings.xlsx.
     """
-    from verification.desk.coating_table import HEADS, VERDICT, read_rows, solved_row, table_csv, table_page
+    from verification.desk.coating_table import HEADS, VERDICT, read_rows, solved_row, table_page, table_rows
+    from verification.desk.table_file import MISSING, write_cells
 
     jobs, begin = worker_count(jobs), time.perf_counter()
     cases, rows = read_rows(file), []
@@ -46,9 +49,10 @@ def compare_coatings(
             for row in pool.map(solved_row, cases):
                 rows.append(row)
                 bar.update(task, advance=1)
-    texts = {"coatings.csv": table_csv(rows), "coatings.html": table_page(rows, cases, file.name)}
-    for name, text in texts.items():
-        write_atomically(output / name, text)
+    write_atomically(output / "coatings.html", table_page(rows, cases, file.name))
+    files = ["coatings.csv", "coatings.html", *(["coatings.xlsx"] if find_spec("openpyxl") else [])]
+    for name in (one for one in files if not one.endswith(".html")):
+        write_cells(output / name, table_rows(rows))
     heads = [*HEADS, *VERDICT]
     if as_json:
         print_json([dict(zip(heads, row.cells, strict=True)) for row in rows])
@@ -62,7 +66,8 @@ def compare_coatings(
             if row.message:
                 print_out(escape(f"{row.name}: {row.message}"))
         seconds = time.perf_counter() - begin
-        print_out(
-            escape(f"{len(rows)} coatings in {seconds:.0f} s: {', '.join(str(output / n) for n in texts)}")
-        )
+        made = ", ".join(str(output / name) for name in files)
+        print_out(escape(f"{len(rows)} coatings in {seconds:.0f} s: {made}"))
+        if len(files) < 3:
+            print_out(escape(f"no coatings.xlsx: {MISSING}"))
     return EXIT[Outcome.NO_RESULT if any(row.message for row in rows) else Outcome.AGREES]

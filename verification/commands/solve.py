@@ -17,7 +17,8 @@ from threadpoolctl import threadpool_limits
 from verification.cases.case_file import Case, default_cases, parse_case, read_case
 from verification.cases.materials import SHIPPED as SHIPPED_MATERIALS
 from verification.cases.plausibility import refused
-from verification.cases.toml_file import NO_SOURCE, load_toml
+from verification.cases.toml_file import NO_SOURCE, is_number, load_toml
+from verification.cases.unit_numbers import in_si
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.known_folders import require_format
 from verification.commands.common.named_files import SHIPPED, path_of
@@ -54,9 +55,14 @@ from verification.desk.layer_limits import (
     verdict,
 )
 from verification.desk.many_layers import many, worst_of_each
+from verification.desk.material_spread import Spread, ranges_of
+from verification.desk.material_spread import spread as material_spread
 from verification.desk.stack_text import body_label, described, outside_verified, stack, units_of
+from verification.desk.table_file import FORMATS as TABLE_FORMATS
+from verification.desk.table_file import answer_rows, write_cells
 from verification.judging.outcome import Outcome
 from verification.problem.coated_contact import CoatedContact
+from verification.problem.display_units import prefixed
 from verification.problem.point_answers import FLAT
 from verification.problem.quantity import QUANTITIES
 from verification.regression.run_exit_codes import EXIT
@@ -87,7 +93,11 @@ def solve(
     check: Flag = False,
     every: Annotated[bool, Parameter(name="--all", negative="")] = False,
     materials: Path = SHIPPED_MATERIALS,
+    spread: Flag = False,
+    thickness_of_sample: str | None = None,
+    temperature_change: float | None = None,
     plot: Path | None = None,
+    csv: Path | None = None,
     force: Flag = False,
     strict: Strict = False,
     as_json: AsJson = False,
@@ -117,14 +127,42 @@ def solve(
         materials: File of the materials that may be given by name alone, see coatcheck materials: "DLC 2 um",
             "100Cr6".
         every: Show every layer of a stack of many, not the worst of each material alone.
+        spread: Show how far the answer moves over the ranges of the materials given by name.
+        thickness_of_sample: "5 mm", coatings included: what half-spaces cost is told for it, not for a disc
+            as thick as the radius of the ball.
+        temperature_change: Since deposition [K], -400 after cooling; with "expansion 9e-6" [1/K] of coating
+            and substrate it gives the stress of their mismatch, which adds to a residual stress of growth.
         plot: Write a figure of the stresses, FILE.png, FILE.pdf or FILE.svg.
+        csv: Write every number of the answer in SI units, FILE.csv or FILE.xlsx.
         force: Solve although a number looks like a slip of its unit.
     """
     begin = time.perf_counter()
-    given = (ball, radii, against, load, approach, coating, substrate, friction, ball_coating)
+    given = (
+        ball,
+        radii,
+        against,
+        load,
+        approach,
+        coating,
+        substrate,
+        friction,
+        ball_coating,
+        temperature_change,
+    )
     case = _from_file(file, given) if file is not None else _from_options(*given, materials)
     if plot is not None:
-        require_format(plot)
+        from verification.desk.answer_figure import FORMATS
+
+        require_format(plot, FORMATS, "--plot")
+    if csv is not None:
+        require_format(csv, TABLE_FORMATS, "--csv")
+    sample = _sample(case, thickness_of_sample)
+    ranges = ranges_of(case, materials)
+    if spread and not ranges:
+        raise CommandError(
+            f"{case.name}: --spread: no material given by name has a range in {materials}; copy that file, "
+            "give the material low and high beside E, and name the copy with --materials"
+        )
     if not force:
         for line in refused(case.problem):
             raise CommandError(f"{case.name}: {line}; correct it, or solve it as it is with --force")
@@ -149,12 +187,20 @@ def solve(
         modes = modes_of(case, first)
     late = [*limit_warnings(case, first, modes), *strain_warnings(case, first)]
     print_warnings(late, case.name, strict=strict, silent=as_json)
+    spreaded = None
+    if spread:
+        with _working("ranges of the materials", as_json):
+            spreaded = material_spread(case, first, ranges, case.numerics.get(METHOD, {}))
     with _working("error of the model", as_json):
-        beyond = model_error(case.problem)
+        beyond = model_error(case.problem, sample=sample)
     costs = beyond.warnings(told=case.warnings)
     print_warnings(costs, case.name, strict=strict, silent=as_json)
     apart = differences(first, second) if second is not None else ()
-    remarks = (*case.remarks, *unusual(case, first))
+    remarks = [*case.remarks, *unusual(case, first)]
+    if ranges and not spread:
+        remarks.append(f"{', '.join(one.words for one in ranges)}: see what follows with --spread")
+    if csv is not None:
+        write_cells(csv, answer_rows(case, stated, spreaded))
     if plot is not None:
         from verification.desk.answer_figure import write
 
@@ -171,6 +217,7 @@ def solve(
             "warnings": [*case.warnings, *late, *costs],
             "remarks": remarks,
             "model_error": {"message": beyond.message(), **encode(beyond)},
+            "spread": spreaded and spreaded.as_json,
             "answer": encode(stated),
             "verdict": verdict(case, modes),
             "modes": [encode(one) | {"utilisation": one.utilisation} for one in modes],
@@ -180,7 +227,7 @@ def solve(
         }
         print_json(content)
     else:
-        _print(case, stated, apart, halved, modes, remarks, every=every)
+        _print(case, stated, apart, halved, modes, remarks, spreaded, every=every)
         _print_model(case, beyond, checked=second is not None)
         elements = f", finite elements {second.seconds:.1f} s" if second else ""
         total = time.perf_counter() - begin
@@ -218,6 +265,7 @@ def _from_options(
     substrate: str | None,
     friction: float | None,
     ball_coating: list[str] | None,
+    temperature_change: float | None,
     materials: Path,
 ) -> Case:
     unsized = ball is None and radii is None
@@ -226,10 +274,28 @@ def _from_options(
         raise CommandError(f"give a case file, or {asked}; see coatcheck solve --help")
     try:
         layers = coating or [], friction or 0.0, ball_coating or []
-        text = case_text(ball, load, substrate, *layers, approach, materials, radii, against)
+        words = (ball, load, substrate, *layers, approach, materials, temperature_change, radii, against)
+        text = case_text(*words)
     except ValueError as error:
         raise CommandError(str(error)) from None
     return parse_case(text.encode("utf-8", errors="replace"), Path("options"))
+
+
+def _sample(case: Case, thickness: str | None) -> float | None:
+    """The thickness of the sample [m]."""
+    if thickness is None:
+        return None
+    try:
+        value = float(thickness) if is_number(thickness) else in_si(thickness, "m")
+    except ValueError as error:
+        raise CommandError(f"--thickness-of-sample: {error}, not {thickness!r}") from None
+    coated = sum(h for *_, h in case.problem.coatings)
+    if not coated < value < math.inf:
+        shown = prefixed(coated, "m") if coated else "0"
+        raise CommandError(
+            f"--thickness-of-sample = {thickness}; it has to be above {shown}, its coatings included"
+        )
+    return value
 
 
 def _answer(case: Case, source: str) -> ContactAnswer:
@@ -272,6 +338,7 @@ def _print(
     halved: Sequence[AnswerDifference],
     modes: tuple[LayerMode, ...],
     remarks: Sequence[str],
+    spread: Spread | None,
     *,
     every: bool,
 ) -> None:
@@ -286,16 +353,19 @@ def _print(
         return [f"[bold red]{s}[/]" if beyond and h.startswith("elements") else s for h, s in shown.items()]
 
     shown_of = "" if every or not many(case) else "the worst of each material and interface; all with --all"
-    numbers = _table(("contact", "unit"), ("value", "±", *more))
+    between = ("lowest", "highest") if spread else ()
+    numbers = _table(("contact", "unit"), ("value", "±", *more, *between))
     axes = "xyz" if case.problem.elliptical else "xz"
-    shown_in = (units.stress, f"± {units.stress}", *(f"{axis} {units.length}" for axis in axes))
+    places = (f"{axis} {units.length}" for axis in axes)
+    shown_in = (units.stress, f"± {units.stress}", *places, *between)
     table = _table(("largest", "place"), (*shown_in, *(f"{head} {units.stress}" for head in more)))
     for name, (value, stated) in first.numbers.items():
         pressure = name not in HALF_AXES and QUANTITIES[name].unit == "Pa"
         unit, scale = (units.stress, units.pascal) if pressure else (units.length, units.metre)
         cells = [_value(value / scale, stated and stated / scale), _spread(stated, scale)]
+        ends = [f"{end / scale:.4g}" for end in spread.ends[name,]] if spread else []
         symbol = HALF_AXES.get(name) or QUANTITIES[name].symbol
-        numbers.add_row(symbol, unit, *cells, *checked((name,), scale))
+        numbers.add_row(symbol, unit, *cells, *checked((name,), scale), *ends)
     body = FLAT
     for at in first.extremes if every else worst_of_each(case, first.extremes):
         if at.body != body:
@@ -307,10 +377,12 @@ def _print(
         places = ["-" if math.isnan(at.x) else f"{s:.{decimals}f}" for s in rounded]
         shown = [_value(at.value / units.pascal, at.uncertainty / units.pascal)]
         shown.append(_spread(at.uncertainty, units.pascal))
-        table.add_row(at.quantity, where, *shown, *places, *checked(key, units.pascal))
+        ends = [f"{end / units.pascal:.4g}" for end in spread.ends[key]] if spread else []
+        table.add_row(at.quantity, where, *shown, *places, *ends, *checked(key, units.pascal))
     said = (
         summary(case.problem, first, case.names),
         verdict(case, modes),
+        spread.sentence(case, modes) if spread else "",
         *(f"Remark: {line}." for line in remarks),
         agreement(first, tuple(apart)),
     )

@@ -8,10 +8,11 @@ A further assumption is one more entry of ``ASSUMPTIONS``: ``model_error``, the 
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, fields
-from functools import cache
+from functools import cache, partial
 
 from verification.evidence.assumption_maps import SHIPPED, AssumptionMaps, read_maps
 from verification.problem.coated_contact import CoatedContact
+from verification.problem.display_units import prefixed
 from verification.problem.quantity import BALL_PEAKS, PEAKS
 from verification.sources.assumptions.contact_change import SCALARS, Change, of_goodman, of_sphere
 from verification.sources.assumptions.finite_bodies import of_half_spaces
@@ -20,6 +21,7 @@ from verification.sources.assumptions.strain_cost_of_pair import of_pair
 QUANTITIES = tuple(one.name for one in fields(Change))
 PARABOLA, GOODMAN = "parabola for the sphere", "Goodman's assumption"
 HALF_SPACES = "half-spaces for the ball and a disc as thick as its radius"
+HALF_SPACES_OF = "half-spaces for the ball and a disc of {}"
 SMALL_STRAINS = "small strains"
 Reading = Callable[[CoatedContact], tuple[Change, Change]]
 
@@ -127,26 +129,36 @@ class ModelError:
         told : warnings of implausible input, which are not repeated.
         """
         found = []
-        for one in ASSUMPTIONS.values():
-            if one.warned and any(line.startswith(one.warned) for line in told):
+        known = {one.title: one.warned for one in ASSUMPTIONS.values()}
+        for title in dict.fromkeys(cost.assumption for cost in self.costs):
+            warned = known.get(title, "")
+            if warned and any(line.startswith(warned) for line in told):
                 continue
-            worst = self.largest(judged, one.title)
+            worst = self.largest(judged, title)
             if worst is not None and worst.size > LIMIT:
-                found.append(f"{one.title} costs {worst.words}")
+                hint = "; give yours, --thickness-of-sample" if title == HALF_SPACES else ""
+                found.append(f"{title} costs {worst.words}{hint}")
         return tuple(found)
 
 
-def model_error(problem: CoatedContact, maps: AssumptionMaps | None = None) -> ModelError:
+def model_error(
+    problem: CoatedContact, maps: AssumptionMaps | None = None, sample: float | None = None
+) -> ModelError:
     """Costs of the assumptions at ``problem``, in tenths of a second; in seconds under h < a_h/20.
 
     maps : to read the assumptions in that are not evaluated; those of the package if None.
+    sample : thickness of the flat with its coatings [m], in place of the radius of the ball.
     """
     if problem.indenter is not None:
         return ModelError((), tuple((one.title, "it is known for spheres") for one in ASSUMPTIONS.values()))
     maps = _shipped() if maps is None else maps
     costs: list[Cost] = []
     missing: list[tuple[str, str]] = []
-    for name, assumption in ASSUMPTIONS.items():
+    assumptions = dict(ASSUMPTIONS)
+    if sample is not None:
+        own = partial(of_half_spaces, thickness=sample / problem.radius)
+        assumptions["bodies"] = Assumption(HALF_SPACES_OF.format(prefixed(sample, "m")), own)
+    for name, assumption in assumptions.items():
         try:
             change, uncertainty = (
                 assumption.change(problem) if assumption.change else _read(maps, name, problem)

@@ -62,12 +62,14 @@ def case_text(
     on_ball: Sequence[str] = (),
     approach: str | None = None,
     materials: Path = SHIPPED,
+    temperature_change: float | None = None,
     radii: str | None = None,
     against: str | None = None,
 ) -> str:
     """The case file of a problem in words; coatings from the surface of each body inwards.
 
     approach : in place of the load, which then is None.   materials : the file of those given by name alone.
+    temperature_change : since deposition [K], which needs "expansion 9e-6" of coatings and bodies.
     radii, against : of curvature, along x and y, of either body; the ball then is a solid alone, or rigid.
     Raises ValueError where the number of words is wrong, naming the option.
     """
@@ -102,6 +104,7 @@ def case_text(
     pressed = "".join(
         f"{key} = {_toml(word)}\n" for key, word in (("load", load), ("approach", approach)) if word
     )
+    pressed += "" if temperature_change is None else f"temperature_change = {temperature_change!r}\n"
     told = f"typical values: {'; '.join(used.values())}"[:500]
     source = f"source = {json.dumps(told, ensure_ascii=False)}\n" if used else ""
     return (

@@ -1,7 +1,11 @@
-"""Several coatings side by side: a row of a table each, solved, judged, written as CSV and as one page."""
+"""Several coatings side by side: a row of a table each, solved, judged, written as table and as one page.
 
-import csv
-import io
+A solid is in one column, "coating 1" with "TiN 2 um, 450 GPa, 0.25, strength 2 GPa", or in one for each
+number: "coating 1" with its name, "coating 1 thickness [um]", "coating 1 E [GPa]", "coating 1 nu",
+"coating 1 strength [GPa]". A unit in the head is that of the numbers below.
+"""
+
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,15 +22,18 @@ from verification.desk.case_wording import case_text
 from verification.desk.contact_answer import answer, summary
 from verification.desk.layer_limits import MODES, LayerMode, layer_modes, place_name, strengths_of, verdict
 from verification.desk.stack_text import conditions, stack
+from verification.desk.table_file import read_cells
 from verification.page.figures import inline, written
 from verification.page.html_page import render_sections
 from verification.page.page_parts import Gallery, Panel, Part, Section, Value, number, table_of
-from verification.page.page_parts import written as as_csv
 from verification.running.case_result import message_of
 from verification.sources.source_registry import METHODS
 
 COLUMNS = ("name", "ball", "load", "substrate", "friction")  # beside those that begin with "coating"
-MOST_ROWS, MOST_BYTES = 1000, 5_000_000
+MOST_ROWS = 1000
+_HEAD = re.compile(r"(ball|substrate|coating ?\d*|name|load|friction)(?: (.*?))?(?: ?[\[(](.*)[\])])?")
+_NUMBERS = {"radius": "", "diameter": "d = ", "thickness": "", "E": "", "nu": ""}  # that come first, in order
+_STATED = ("strength", "residual stress", "yield strength", "adhesion", "hardness", "expansion")
 HUES = dict(zip(MODES, ("#0072B2", "#D55E00", "#009E73", "#CC79A7"), strict=True))
 HEADS = ("name", "stack", "p0 [MPa]", "a [um]", "sigma_1 coatings [MPa]", "von Mises [MPa]", "shear [MPa]")
 VERDICT = ("governing", "used", "safety factor", "message")
@@ -65,37 +72,65 @@ class CoatingRow:
 
 
 def read_rows(path: Path) -> list[Case]:
-    """The problem of every row of a CSV file, in the words of ``coatcheck solve``. Raises CaseError."""
-    try:
-        text = path.read_bytes()[: MOST_BYTES + 1].decode("utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise CaseError(f"{path}: cannot be read as CSV in UTF-8 ({error})") from None
-    first = text.partition("\n")[0]
-    rows = csv.reader(io.StringIO(text), delimiter=max(";\t,", key=first.count))
-    heads = [head.strip().casefold() for head in next(rows, [])]
-    wrong = [head for head in heads if head and head not in COLUMNS and not head.startswith("coating")]
-    missing = [head for head in COLUMNS[1:4] if head not in heads]
-    if wrong or missing or len(text) > MOST_BYTES:
-        what = f"has an unknown column {wrong[0]!r}" if wrong else "is too large"
-        what = f"has no column {missing[0]}" if missing else what
-        raise CaseError(f"{path}: {what}; the columns are {', '.join(COLUMNS)}, coating 1, coating 2, ...")
+    """The problem of every row of a table, in the words of ``coatcheck solve``. Raises CaseError."""
+    first, *rows = [[cell.strip() for cell in row] for row in read_cells(path)] or [[]]
+    heads = [_head(head) for head in first]
+    wrong = [head for head, known in zip(first, heads, strict=True) if head and known is None]
+    missing = [one for one in COLUMNS[1:4] if not any(head and head[0] == one for head in heads)]
+    if wrong or missing:
+        what = f"has no column {missing[0]}" if missing else f"has an unknown column {wrong[0]!r}"
+        parts = "; or one for each number, such as coating 1 E [GPa]"
+        raise CaseError(
+            f"{path}: {what}; the columns are {', '.join(COLUMNS)}, coating 1, coating 2, ...{parts}"
+        )
     found = []
     for line, cells in enumerate(rows, start=2):
-        given = dict(zip(heads, (cell.strip() for cell in cells), strict=False))
-        if not any(given.values()):
+        if not any(cells):
             continue
-        coatings = [word for head, word in given.items() if head.startswith("coating") and word]
+        given = _words(heads, cells)
+        coatings = [word for head, word in given.items() if head.startswith("coating")]
         try:
-            friction = float(given.get("friction") or 0)
-            words = case_text(given["ball"], given["load"], given["substrate"], coatings, friction)
+            friction = float(given.get("friction", 0))
+            ball, load, substrate = (given.get(key, "") for key in ("ball", "load", "substrate"))
+            words = case_text(ball, load, substrate, coatings, friction)
             case = parse_case(words.encode(), Path(given.get("name") or f"row {line}"))
             for slip in refused(case.problem):
                 raise ValueError(slip)
-        except (ValueError, KeyError) as error:
+        except ValueError as error:
             raise CaseError(f"{path}: line {line}: {error}") from None
         found.append(case)
     if not 1 <= len(found) <= MOST_ROWS:
         raise CaseError(f"{path}: has {len(found)} coatings; give 1 to {MOST_ROWS}, a row each")
+    return found
+
+
+def _head(text: str) -> tuple[str, str, str] | None:
+    """What a column holds: of which solid, which property, in which unit; None where it is unknown."""
+    found = _HEAD.fullmatch(" ".join(text.split()).casefold())
+    if found is None:
+        return None
+    of, key = found[1], found[2] or ""
+    known = {one.casefold(): one for one in (*_NUMBERS, *_STATED)} | {"": ""}
+    known |= {"modulus": "E", "poisson": "nu", "residual": "residual stress", "yield": "yield strength"}
+    if key not in known or (key and of in ("name", "load", "friction")):
+        return None
+    given = re.search(r"[\[(](.*)[\])]\s*$", text)
+    return of, known[key], given[1].strip() if given else ""
+
+
+def _words(heads: Sequence[tuple[str, str, str] | None], cells: Sequence[str]) -> dict[str, str]:
+    """The words of a row by their solid: "DLC" with 2 [um], 180 [GPa], 0.2 is "DLC 2 um, 180 GPa, 0.2"."""
+    parts: dict[str, dict[str, str]] = {}
+    for head, cell in zip(heads, cells, strict=False):
+        if head and cell:
+            of, key, unit = head
+            parts.setdefault(of, {})[key] = f"{cell} {unit}".strip()
+    found = {}
+    for of, one in parts.items():
+        numbers = [f"{mark}{one[key]}" for key, mark in _NUMBERS.items() if key in one]
+        first = " ".join([*([one[""]] if "" in one else []), *numbers[:1]])
+        stated = [f"{key} {one[key]}" for key in _STATED if key in one]
+        found[of] = ", ".join([first, *numbers[1:], *stated])
     return found
 
 
@@ -119,9 +154,14 @@ def solved_row(case: Case) -> CoatingRow:
     return CoatingRow(case.name, stack(case), (scaled[0], a / 1e-6, *scaled[1:]), named, said)
 
 
-def table_csv(rows: Sequence[CoatingRow]) -> str:
-    """The table as CSV."""
-    return as_csv([[*HEADS, *VERDICT], *(row.cells for row in rows)])
+def table_rows(rows: Sequence[CoatingRow]) -> list[list[str | float | None]]:
+    """The table for a file: heads, then a row each, whose numbers are numbers."""
+    words = {0, 1, len(HEADS), len(HEADS) + len(VERDICT) - 1}
+    told = [
+        [cell if i in words else float(cell) if cell else None for i, cell in enumerate(row.cells)]
+        for row in rows
+    ]
+    return [[*HEADS, *VERDICT], *told]
 
 
 def table_page(rows: Sequence[CoatingRow], cases: Sequence[Case], title: str) -> str:

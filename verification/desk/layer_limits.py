@@ -185,7 +185,7 @@ def unusual(case: Case, found: ContactAnswer) -> tuple[str, ...]:
         if at.quantity != "von_mises" or (at.body, at.where, at.quantity) in known:
             continue
         seen = case.problem.seen_from(at.body)
-        layers = case.layers.get(at.body) or (1,) * len(seen.coatings)
+        layers = case.sublayers(at.body)
         number = int(at.where.split()[-1]) - 1 if at.where.startswith("coating") else len(layers)
         E = (*seen.coatings, seen.substrate)[sum(layers[:number])][0]
         if at.value > UNUSUAL * E:

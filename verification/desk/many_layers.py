@@ -41,7 +41,7 @@ def _size(at: Extreme | LayerMode) -> float:
 def _materials(case: Case, body: str) -> list[str]:
     """A word for the material of each coating of a body: its name, or its numbers."""
     seen, names, begin, found = case.problem.seen_from(body), case.names.get(body, ()), 0, []
-    for i, n in enumerate(case.layers.get(body) or (1,) * len(seen.coatings)):
+    for i, n in enumerate(case.sublayers(body)):
         E, nu, _ = seen.coatings[begin]
         found.append((names[i] if i < len(names) else "") or f"{E:g} {nu:g}")
         begin += n

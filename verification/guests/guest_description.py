@@ -75,7 +75,7 @@ class NodalFile(Strict):
 class GuestFile(Strict):
     """The keys of a guest file.
 
-    callable, command, results : the way in, one of the three.
+    version : of the code, for the report.   callable, command, results : the way in, one of the three.
     python : the interpreter of ``callable``, of an environment with numpy; coatcheck's own unless given.
     nodes : how files of nodes below ``results`` are read.
     claim : largest relative difference that the code claims to have; None where it does not say.
@@ -85,6 +85,7 @@ class GuestFile(Strict):
     """
 
     name: Annotated[str, Field(pattern=r"^[^\x00-\x1f\x7f]{1,60}$")]
+    version: Word | None = None
     callable: Word | None = None
     python: Word | None = None
     command: Annotated[list[Word], Field(min_length=1, max_length=50)] | None = None

@@ -23,6 +23,7 @@ def test_each_name_stands_for_its_typical_values_and_its_source_is_told(tmp_path
             assert found.problem.ball == (one.E, one.nu, ())
             assert found.problem.coatings == ((one.E, one.nu, 2e-6),)
             assert one.source in found.source
+            assert ("not compared with it" in found.source) == (one.checked == "no")
             assert found.limits == {"coatings.0.strength": 1e9}
 
 

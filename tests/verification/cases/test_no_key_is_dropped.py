@@ -211,7 +211,7 @@ def work_of(text, command, capsys, monkeypatch):
 
     for module in (solve, layer_limits):
         monkeypatch.setattr(module, "answer", answer)
-    monkeypatch.setattr(solve, "model_error", lambda problem: ModelError(()))
+    monkeypatch.setattr(solve, "model_error", lambda problem, sample=None: ModelError(()))
     path = Path("mine.toml")
     path.write_text(text)
     solve.solve("mine.toml", force=True)

@@ -192,6 +192,29 @@ def test_a_function_in_an_environment_of_its_own_gets_the_same_verdicts(tmp_path
     assert "4 of 4" in done.stdout
 
 
+UNDER_DISC = """
+def solve(pressure=None, load_radius=None, substrate=None, **sphere):
+    if pressure is None:
+        raise NotImplementedError("no sphere")
+    def displacement(x, y, z):
+        return np.array([0 * x, 0 * x, 0 * x + 4 / np.pi * pressure * load_radius / substrate[0]])
+    return {"displacement": displacement}
+"""
+
+
+def test_a_function_of_another_environment_is_asked_under_a_disc(tmp_path):
+    supports = 'supports = { loads = ["disc"] }'
+    text = f'name = "d"\ncallable = "adapter:solve"\nclaim = 0.01\n{supports}\n'
+    found = []
+    for python in ("", f"python = {json.dumps(sys.executable)}\n"):
+        (tmp_path / "adapter.py").write_text(f"import numpy as np\n{UNDER_DISC}")
+        (tmp_path / "guest.toml").write_text(python + text)
+        done = coatcheck("guest", "run", ".", "01_uncoated_steel", "--json", cwd=tmp_path)
+        found.append(json.loads(done.stdout)["cases"])
+    assert found[0] == found[1]
+    assert "NO_RESULT" not in found[0]["01_uncoated_steel_disc"]
+
+
 def test_judge_judges_what_was_packed(tmp_path):
     assert coatcheck("guest", "pack", "mine", "01_uncoated_steel", cwd=tmp_path).returncode == 0
     done = coatcheck("guest", "judge", "mine", "--json", cwd=tmp_path)

@@ -136,6 +136,23 @@ def test_nodes_say_what_the_elements_say_up_to_the_interpolation_error(elements,
         assert error < 2e-3, key
 
 
+def test_a_quarter_of_a_body_is_mirrored(elements):
+    guest, asked, place = elements.guest('["x", "y", "z"]')
+    a, h = elements.case.loaded.load_radius, elements.case.problem.coatings[0][2]
+    steps = 6 * a * np.linspace(0, 1, 17) ** 2
+    rows = []
+    for layer, depths in enumerate((np.linspace(0, h, 9), h + 6 * a * np.linspace(0, 1, 9) ** 2)):
+        x, y, z = (v.ravel() for v in np.meshgrid(steps, steps, depths, indexing="ij"))
+        sigma, u = elements.solution.stress(x, y, z, layer=layer), elements.solution.displacement(x, y, z)
+        rows.append([x, y, z, layer + 0 * x, *(sigma[c] for c in STRESSES.values()), *u])
+    written(place / "nodes.csv", ["x", "y", "z", "material", *STRESSES, *DISPLACEMENTS], np.hstack(rows))
+    answer = read_answer(guest, elements.case, asked)
+    assert (answer.error, answer.failed, answer.missing, answer.warnings) == (None, {}, {}, [])
+    found = elements.errors(answer, asked)
+    assert all(error <= own + 3 * U + 1e-3 for error, own, U in found.values())
+    assert np.median([error for error, *_ in found.values()]) < 0.02
+
+
 def test_one_value_for_two_materials_is_named(elements):
     guest, asked, place = elements.guest('["r", "z"]')
     r, z, fields, layer, _ = elements.mesh()
@@ -167,6 +184,7 @@ def test_one_value_for_two_materials_is_named(elements):
         ("r,sigma_rr\n1e-6,1\n", "'z'"),
         ("r,z,u_r,u_z\n1e-6,-1e-6,1,1\n", '"-z"'),
         ("r,z,u_r,u_z\n1e-6,1e-6,1,1\n", "1 nodes in layer 0"),
+        ("r,z,layer,u_r,u_z\n1e-6,1e-6,0,1,1\n", "of 1 layers; this problem has 2"),
         ("r,z,u_r,u_z\n1e-6,1e-6,much,1\n", "row 2, u_r: 'much'"),
     ],
 )

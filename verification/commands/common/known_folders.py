@@ -1,5 +1,6 @@
 """Places that the commands read or write."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import verification
@@ -34,11 +35,9 @@ def require_checkout(folder: Path, option: str) -> None:
         )
 
 
-def require_format(plot: Path) -> None:
-    """Raises CommandError where a figure has no name of one of its formats, or no folder."""
-    from verification.desk.answer_figure import FORMATS
-
-    if plot.suffix.lower() not in FORMATS:
-        raise CommandError(f"--plot = {plot}; the name has to end in {', '.join(FORMATS)}")
-    if not plot.parent.is_dir():
-        raise CommandError(f"--plot = {plot}; there is no folder {plot.parent}; create it, or name another")
+def require_format(path: Path, formats: Sequence[str], option: str) -> None:
+    """Raises CommandError where a file of an option has no name of one of its ``formats``, or no folder."""
+    if path.suffix.lower() not in formats:
+        raise CommandError(f"{option} = {path}; the name has to end in {', '.join(formats)}")
+    if not path.parent.is_dir():
+        raise CommandError(f"{option} = {path}; there is no folder {path.parent}; create it, or name another")

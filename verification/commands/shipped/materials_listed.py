@@ -36,11 +36,12 @@ def materials(*names: str, file: Path = SHIPPED, as_json: AsJson = False) -> int
     if as_json:
         print_json([one.model_dump(exclude_none=True) for one in chosen])
         return 0
-    table = named_table("name", "E", "range", "nu", "yields", "also", "source")
+    table = named_table("name", "E", "range", "nu", "yields", "also", "compared", "source")
     for one in chosen:
         note = "" if one.note == "-" else f"; {one.note}"
         yields = prefixed(one.yield_strength, "Pa") if one.yield_strength else ""
-        cells = (prefixed(one.E, "Pa"), one.range, f"{one.nu:g}", yields, ", ".join(one.also))
+        cells = (prefixed(one.E, "Pa"), one.range, f"{one.nu:g}", yields, ", ".join(one.also), one.checked)
         table.add_row(escape(one.name), *map(escape, (*cells, f"{one.source}{note}")))
-    print_out(table, "", escape(f"typical values, for lack of your own: {file}"))
+    said = f"typical values, for lack of your own: {file}; compared: with the source or its abstract"
+    print_out(table, "", escape(said))
     return 0

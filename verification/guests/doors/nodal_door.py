@@ -165,11 +165,16 @@ def turned(axes: list[str]) -> Array:
 
 
 def layers_of(given: NodalFields, x: Array, depths: Array, slack: float) -> list[NDArray[np.bool_]]:
-    """Which nodes belong to each layer: by the middle of their cells, by their number, or by their depth."""
+    """Which nodes belong to each layer: by the middle of their cells, by their number, or by their depth.
+
+    Raises ProtocolError where their numbers are not as many as the layers.
+    """
     count = len(depths)
     found = [np.zeros(len(x), dtype=bool) for _ in range(count)]
-    if given.layer is not None and len(np.unique(given.layer)) == count:
+    if given.layer is not None:
         numbers = np.unique(given.layer)
+        if len(numbers) != count:
+            raise ProtocolError(f"its nodes are of {len(numbers)} layers; this problem has {count}")
         order = np.argsort([x[given.layer == number, 2].mean() for number in numbers])
         return [given.layer == numbers[i] for i in order]
     for cells in given.cells:

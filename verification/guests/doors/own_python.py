@@ -104,7 +104,7 @@ def answered(function: Any, question: dict[str, Any]) -> dict[str, Any]:
     for name in question["contact"]:
         put("contact", [name], lambda name=name: {} if get(name) is None else {name: float(get(name))})
     peaks = {"largest_tension", "tension_place"} & set(question["contact"])
-    if peaks - set(found["values"]["contact"]) and question["edge"]:
+    if peaks - set(found["values"].get("contact", ())) and question["edge"]:
         put("contact", sorted(peaks), lambda: largest_tension(result, question))
     for line in (line for line in question["lines"] if line["body"] == "flat"):
         x, y, z = (np.array(line[c]) for c in "xyz")

@@ -55,7 +55,7 @@ def page(found: Examined, info: RunInfo) -> str:
     """The whole page as HTML."""
     guest, total = found.guest, found.total
     facts = [
-        ("guest", guest.name),
+        ("guest", f"{guest.name} {guest.version or ''}".strip()),
         ("way in", guest.callable or " ".join(guest.command or ()) or f"files in {guest.results}"),
         ("uncertainty", _uncertainty(found)),
         ("left out", f"|r - a| < {guest.edge:g} a" if guest.edge else "nothing"),
@@ -99,10 +99,12 @@ def summary(found: Examined) -> dict[str, Any]:
             kind = QUANTITIES[claim.quantity].kind
             name = claim.quantity if kind == "scalar" else kind
             differences[name] = max(differences.get(name, 0.0), verdict.difference)
-    own = [s for r in found.results for s in r.sources if s.source == guest.name and s.seconds]
+    judged = [r for r in found.results if any(v.difference is not None for _, v in r.verdicts)]
+    own = [s for r in judged for s in r.sources if s.source == guest.name and s.seconds]
     times = [source.seconds for source in own]
     return {
         "guest": guest.name,
+        "version": guest.version,
         "cases": len(own),
         "levels": f"{guest.parameter} {', '.join(f'{v:g}' for v in guest.levels)}" if guest.levels else "",
         "agree": found.total[Outcome.AGREES],

@@ -16,6 +16,7 @@ COLUMNS = {
     "approach": "approach",
     "pressure": "p(r)",
     "displacement": "u_z under a square",
+    "stress": "stresses",
 }
 
 
@@ -31,7 +32,7 @@ def section() -> Section:
         memory = one["memory"] and one["memory"] / 1e6
         rows.append(
             row(
-                one["guest"],
+                " ".join(filter(None, (one["guest"], one.get("version"), one.get("date")))),
                 tally(one["agree"], one["answered"]),
                 number(one["cases"], str),
                 words(one["levels"]),
@@ -43,7 +44,7 @@ def section() -> Section:
     text = (
         "Answers of other contact codes to coatcheck guest run, through the adapters in "
         "verification/guests/examples. What a code does not support is not counted. Settings were chosen "
-        "with the results in view: this is no blind test."
+        "with the results in view: this is no blind test. python tests/tools guests records them."
     )
     caption = "Largest difference from the exact solution; longest time of the finest level, machine busy."
     heads = ["code", "agree", "problems", "levels", *COLUMNS.values(), "time", "memory"]
