@@ -9,17 +9,14 @@ True
 
 from fem_reference.contact.levels import NotConverged
 from fem_reference.contact_solver import solve, solve_prescribed
-from fem_reference.not_round.off_axis import PressedSolid, check_pressure
 from fem_reference.not_round.shaped_contact import ShapedContact, solve_shape
 from fem_reference.solved_contact import Solution
 from fem_reference.vtu import write_vtu
 
 __all__ = [
     "NotConverged",
-    "PressedSolid",
     "ShapedContact",
     "Solution",
-    "check_pressure",
     "solve",
     "solve_prescribed",
     "solve_shape",

@@ -60,6 +60,11 @@ class HarmonicCompliance:
         """Radii of the unknowns below the pressure."""
         return self.discretisation.locations[0, self.loaded]
 
+    @property
+    def vertices(self) -> np.ndarray:
+        """Radii of the vertices among them."""
+        return self.nodes[:: self.discretisation.order]
+
     @cached_property
     def harmonics(self) -> np.ndarray:
         """m of the pressure."""
@@ -83,9 +88,9 @@ class HarmonicCompliance:
         """sum_k values_mk phi_i(r_k), (harmonics, nodes), of values (harmonics, radii)."""
         return (self._shapes(r).T @ values.T).T
 
-    def deflection(self, loads: np.ndarray, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
-        """u_z on arcs as in ``nodal_loads`` under ``loads`` (harmonics, nodes), (arcs, points)."""
-        of_arcs = self._shapes(r) @ np.einsum("mij,mj->im", self.matrices, loads)
+    def deflection(self, at_nodes: np.ndarray, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """u_z on arcs as in ``nodal_loads``, (arcs, points), of its amplitudes (nodes, harmonics)."""
+        of_arcs = self._shapes(r) @ at_nodes
         u = np.zeros(theta.shape)
         for amplitude, wave in zip(of_arcs.T, self._waves(theta, self.last), strict=True):
             u += amplitude[:, None] * wave

@@ -3,11 +3,9 @@
 On a body of revolution a load of harmonic m gives displacements of that harmonic (``axisymmetric``). So the
 fields under p(r, theta) = sum_m p_m(r) cos(m theta), which may slide along x, are a sum over meridian
 problems (``harmonic_compliance``). What the tractions themselves add to the stress on the surface is not
-split into harmonics. A contact without symmetry, solved by another method, is checked by it: under its
-pressure the gap has to vanish inside.
+split into harmonics.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -15,23 +13,16 @@ from typing import Any
 import numpy as np
 
 from fem_reference.elasticity.axisymmetric import Discretisation
-from fem_reference.elasticity.line_quadrature import gauss_legendre
 from fem_reference.elasticity.recovery import HarmonicField, stress_of
 from fem_reference.element_answer import ElementAnswer, PlainFields
 from fem_reference.meshing.location import LocatedPoints, SolidPoints, solid_points
 from fem_reference.meshing.mesh import Grading, MeridianMesh, meridian_mesh, surface_size
-from fem_reference.not_round.harmonic_compliance import DENSITY, HarmonicCompliance, harmonic_compliance
-from fem_reference.scaling import Coatings, LayeredSolid, Units
+from fem_reference.not_round.harmonic_compliance import HarmonicCompliance
+from fem_reference.not_round.star_contact import StarPressure
+from fem_reference.scaling import LayeredSolid, Units
 from fem_reference.solved_contact import cartesian, tensor
-from fem_reference.validation import check_choice, check_materials, check_positive, check_proportions
 
-Pressure = Callable[[Any, Any], Any]
-
-ANGLES = 2048  # midpoints on half a circle: p falls to zero like a square root there
-RADIAL = 48  # points between two vertices of the surface: p_m has kinks there
 AXIS = 0.3  # triangles at the axis over those elsewhere
-COARSER = 1.4  # triangles of the companion over those of the mesh
-NEGLIGIBLE = 1e-9  # of the largest: a harmonic of the pressure below is left out
 # What lies beyond the last harmonic, over what the last third of them adds: of the deflection, whose terms
 # fall as m^-5/2, of the stress, m^-3/2, and alternate in sign but at the edge.
 BEYOND = 0.5, 1.0
@@ -41,45 +32,6 @@ FULL = 0.4  # of the harmonics count in full in a stress, those beyond ever less
 BESIDE, WITHIN, HALVES = (1.2, 16.0), 2.5, (3, 2)
 
 
-def check_pressure(
-    *,
-    pressure: Pressure,
-    reach: float,
-    coatings: Coatings,
-    substrate: tuple[float, float],
-    friction: float = 0.0,
-    harmonics: int = 48,
-    order: int = 4,
-    size: float = 0.3,
-    far: float = 1000.0,
-    estimate_uncertainty: bool = True,
-) -> "PressedSolid":
-    """Deflection and stresses of a coated half-space under a given pressure, and the gap that it leaves.
-
-    pressure : p(x, y) [Pa] of arrays [m], even in y.  reach [m] : distance from the origin without pressure
-    coatings ((E, nu, thickness), ...), substrate (E, nu), friction f in q = f p : as in ``solve``
-    harmonics : the last angular harmonic of the pressure
-    size : of the triangles over the distance from the pressure; on the surface below it half of it, over
-    ``reach``
-    far : distance of the outer boundary over (reach + thickness of all coatings)
-    Raises ValueError for bad input, for a pressure that is not even in y or reaches farther.
-    """
-    check_positive(reach=reach, far=far, size=size, harmonics=harmonics)
-    check_materials(coatings, substrate, friction)
-    check_choice("order", order, (2, 3, 4))
-    solid = LayeredSolid.scaled(coatings, substrate, reach, far, substrate[0])
-    check_proportions(solid.thicknesses, "reach")
-    angular = AngularPressure.of(pressure, reach)
-    unit = Units(length=reach, pressure=angular.scale, modulus=substrate[0])
-
-    def under(coarser: float) -> OffAxisFields:
-        d = discretised(solid, coarser * size, coarser * size / 2, order)
-        compliance = harmonic_compliance(solid, d, int(harmonics), 1, DENSITY / coarser)
-        return OffAxisFields.of(compliance, angular.nodal_loads(compliance), friction, angular)
-
-    return PressedSolid(under(1.0), under(COARSER) if estimate_uncertainty else None, unit)
-
-
 def discretised(
     solid: LayeredSolid,
     size: float,
@@ -87,10 +39,11 @@ def discretised(
     order: int,
     growth: float = 1.5,
     edges: tuple[float, ...] = (),
+    stacks: tuple[tuple[float, ...], ...] = (),
 ) -> Discretisation:
     """Elements of a mesh whose surface is divided evenly below the radius 1, but around ``edges``.
 
-    growth : of the size towards the outer boundary
+    growth : of the size towards the outer boundary.   stacks : see ``meridian_mesh``
     """
     grading = Grading(
         size,
@@ -103,84 +56,25 @@ def discretised(
         surface=surface,
         edges=edges,
     )
-    mesh = meridian_mesh(contact_radius=1.0, thicknesses=solid.thicknesses, far=solid.far, grading=grading)
+    mesh = meridian_mesh(
+        contact_radius=1.0, thicknesses=solid.thicknesses, far=solid.far, grading=grading, stacks=stacks
+    )
     return Discretisation(mesh, order)
-
-
-@dataclass(frozen=True, eq=False)
-class AngularPressure:
-    """p(r, theta) over its largest value ``scale`` [Pa], r over ``reach`` [m]."""
-
-    pressure: Pressure
-    reach: float
-    scale: float
-
-    @classmethod
-    def of(cls, pressure: Pressure, reach: float) -> "AngularPressure":
-        """Raises ValueError for a pressure that is not finite, even in y and zero beyond ``reach``."""
-        r, theta = np.linspace(0, 1.5, 61)[:, None], np.pi * (np.arange(90) + 0.5) / 90
-        x, y = reach * r * np.cos(theta), reach * r * np.sin(theta)
-        p, mirrored = (np.asarray(pressure(x, side * y), dtype=float) for side in (1, -1))
-        scale = float(np.max(np.abs(p)))
-        if not (np.isfinite(scale) and scale > 0):
-            raise ValueError(f"the pressure is {scale:g} Pa at most; it must be finite and not zero")
-        if np.max(np.abs(p - mirrored)) > 1e-6 * scale:
-            raise ValueError(
-                "the pressure is not even in y; turn x and y so that y = 0 is a plane of symmetry"
-            )
-        beyond = float(np.max(np.abs(p[r[:, 0] > 1 + 1e-9])))
-        if beyond > 1e-9 * scale:
-            raise ValueError(f"the pressure is {beyond:g} Pa beyond reach = {reach:g} m; enlarge it")
-        return cls(pressure, reach, scale)
-
-    def __call__(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-        """p; x and y over ``reach``."""
-        return np.asarray(self.pressure(self.reach * x, self.reach * y), dtype=float) / self.scale
-
-    def nodal_loads(self, compliance: HarmonicCompliance) -> np.ndarray:
-        """Its products with the shape functions, (harmonics, nodes)."""
-        vertices = compliance.nodes[:: compliance.discretisation.order]
-        r, weight = gauss_legendre(RADIAL, vertices[:-1], vertices[1:])
-        p = self.harmonics(r, compliance.last)[compliance.harmonics] * weight * r
-        found = np.pi * compliance.products(r, p)
-        found[0] *= 2
-        largest = np.abs(found).max()
-        return np.where(np.abs(found).max(axis=1, keepdims=True) > NEGLIGIBLE * largest, found, 0.0)
-
-    def at(self, r: np.ndarray) -> np.ndarray:
-        """p at the angles of ``ANGLES`` on half circles of radius r, shape of r + (ANGLES,)."""
-        theta = np.pi * (np.arange(ANGLES) + 0.5) / ANGLES
-        x, y = (self.reach * r[..., None] * wave(theta) for wave in (np.cos, np.sin))
-        return np.asarray(self.pressure(x, y), dtype=float) / self.scale
-
-    def harmonics(self, r: np.ndarray, last: int) -> np.ndarray:
-        """p_m at radii r for m = 0, .., last; (last + 1,) + shape of r."""
-        theta = np.pi * (np.arange(ANGLES) + 0.5) / ANGLES
-        waves = np.cos(np.arange(last + 1)[:, None] * theta) * (2 / ANGLES)
-        waves[0] /= 2
-        flat = r.ravel()
-        found = np.empty((last + 1, flat.size))
-        for begin in range(0, flat.size, 64):
-            part = slice(begin, begin + 64)
-            found[:, part] = waves @ self.at(flat[part]).T
-        return found.reshape(last + 1, *r.shape)
 
 
 @dataclass(frozen=True, eq=False)
 class OffAxisFields:
     """The fields of all harmonics on one mesh, in scaled units.
 
-    loads : of the normal pressure, (harmonics, nodes).   pressure : p (x, y)
-    edges : x on the axis y = 0 at which the pressure has a root.   surface : size of the triangles there
+    loads : of the normal pressure, (harmonics, nodes).   surface : size of the triangles there
     """
 
     compliance: HarmonicCompliance
     fields: tuple[HarmonicField, ...]
     loads: np.ndarray
     friction: float
-    pressure: Pressure
-    edges: tuple[float, ...] = ()
-    surface: float = 0.0
+    pressure: StarPressure
+    surface: float
 
     @classmethod
     def of(
@@ -188,9 +82,8 @@ class OffAxisFields:
         compliance: HarmonicCompliance,
         loads: np.ndarray,
         friction: float,
-        pressure: Pressure,
-        edges: tuple[float, ...] = (),
-        surface: float = 0.0,
+        pressure: StarPressure,
+        surface: float,
     ) -> "OffAxisFields":
         d, materials = compliance.discretisation, compliance.solid.materials
         found = compliance.displacements(loads)
@@ -198,11 +91,16 @@ class OffAxisFields:
             for m, u in compliance.sliding(loads, friction).items():
                 found[m] = found[m] + u if m in found else u
         fields = tuple(HarmonicField(d, u, materials, m, np.zeros_like, 0.0, False) for m, u in found.items())
-        return cls(compliance, fields, loads, friction, pressure, edges, surface)
+        return cls(compliance, fields, loads, friction, pressure, surface)
 
     @property
     def discretisation(self) -> Discretisation:
         return self.compliance.discretisation
+
+    @cached_property
+    def edges(self) -> tuple[float, ...]:
+        """x on the axis y = 0 at which the pressure has a root."""
+        return self.pressure.edges
 
     @property
     def least(self) -> float:
@@ -213,11 +111,6 @@ class OffAxisFields:
     def load(self) -> float:
         """int p dA."""
         return float(self.loads[0].sum())
-
-    @property
-    def work(self) -> float:
-        """int p u_z dA."""
-        return float(np.einsum("mi,mij,mj->", self.loads, self.compliance.matrices, self.loads))
 
     def __call__(self, points: SolidPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Displacement (3, n) and stress (6, n), cylindrical, and what the last third of harmonics adds.
@@ -311,7 +204,7 @@ def _powers(away: np.ndarray, halves: int) -> np.ndarray:
 
 @dataclass(frozen=True, eq=False)
 class PressedSolid(PlainFields):
-    """A coated half-space under a given pressure; x along sliding, z into it, tension positive, SI."""
+    """A coated half-space under a pressure; x along sliding, z into it, tension positive, SI."""
 
     _fine: OffAxisFields
     _coarse: OffAxisFields | None
@@ -330,7 +223,7 @@ class PressedSolid(PlainFields):
         """Value of a quantity at points, with its uncertainty when it was estimated.
 
         points : any record with the attributes of ``ElementPoints``, of the flat
-        quantity : pressure, which is given; stress or displacement, uncertain by the change from a coarser
+        quantity : pressure, taken as exact; stress or displacement, uncertain by the change from a coarser
             mesh and by the last harmonics'
         uncertainty : False leaves it out
         """
@@ -348,26 +241,8 @@ class PressedSolid(PlainFields):
         unit = self._units
         return np.asarray(self._fine.pressure(x / unit.length, y / unit.length)) * unit.pressure
 
-    def gap(
-        self, x: Any, y: Any, height: Callable[[Any, Any], Any], approach: float | None = None
-    ) -> np.ndarray:
-        """Gap [m] left under an indenter whose surface has ``height`` (x, y) [m]: height + u_z - approach.
-
-        approach : of the indenter [m]; ``approach_of`` it by default.
-        """
-        approach = self.approach_of(height) if approach is None else approach
-        return height(*np.broadcast_arrays(x, y)) + self.displacement(x, y, 0.0)[2] - approach
-
-    def approach_of(self, height: Callable[[Any, Any], Any]) -> float:
-        """Approach [m] at which the gap vanishes in the mean, weighted with the pressure."""
-        r, theta = (np.arange(400) + 0.5) / 400, np.pi * (np.arange(800) + 0.5) / 800
-        x, y = (self._units.length * np.outer(r, wave(theta)) for wave in (np.cos, np.sin))
-        weight = self.pressure(x, y) * r[:, None]
-        lifted = float((weight * height(x, y)).sum() / weight.sum())
-        return lifted + self._fine.work / self._fine.load * self._units.displacement
-
-    def _matching(self, points: Any) -> tuple[Any, Any]:
-        """Points [m] of the companion that are compared with x, y."""
+    def _matching(self, points: Any, other: StarPressure) -> tuple[Any, Any]:
+        """Points [m] of the ``other`` pressure that are compared with x, y."""
         return points.x, points.y
 
     def _sums(self, points: Any, quantity: str, stated: bool) -> ElementAnswer:
@@ -380,7 +255,7 @@ class PressedSolid(PlainFields):
         values = []
         for fields in (self._fine, self._coarse) if stated else (self._fine,):
             assert fields is not None
-            at = (points.x, points.y) if fields is self._fine else self._matching(points)
+            at = (points.x, points.y) if fields is self._fine else self._matching(points, fields.pressure)
             locator = fields.discretisation.locator
             places = solid_points(locator, self._units.length, *at, points.z, points.layer)
             found, shape = fields(places), (*ahead, *places.shape)

@@ -1,43 +1,70 @@
 """Contact of an indenter that is no sphere, by the compliance of finite elements.
 
-The pressure of another method is the start; it is corrected until the gap that the elements find below the
-indenter vanishes (``star_contact``), on a mesh and on a coarser companion. So the part of it that smooth
-corrections do not reach is the other method's, and what that leaves of the gap counts as an uncertainty.
+Contour and pressure are found from Hertz's ellipse of the bare bodies on (``gap_closing``): on a rough mesh,
+which tells how far the contact reaches, on the mesh, and on a coarser companion with a pressure of lower
+degree.
 """
 
 import time
-from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
+from scipy.interpolate import RegularGridInterpolator
+from scipy.ndimage import maximum_filter
 
-from fem_reference.contact.levels import NotConverged
 from fem_reference.element_answer import ElementAnswer, ElementPoints, Uncertainty
 from fem_reference.meshing.mesh import surface_size
+from fem_reference.not_round.gap_closing import ENOUGH, WEIGHT, Closed, closed
 from fem_reference.not_round.harmonic_compliance import DENSITY, harmonic_compliance
-from fem_reference.not_round.indenter_height import Height, Indenter, indenter_height
+from fem_reference.not_round.indenter_height import Height, Indenter, touching_shape
 from fem_reference.not_round.off_axis import WITHIN, OffAxisFields, PressedSolid, discretised
-from fem_reference.not_round.star_contact import Corrected, StarPressure, corrected
+from fem_reference.not_round.star_contact import StarPressure, hertz_axes
 from fem_reference.scaling import Coatings, LayeredSolid, Units
-from fem_reference.validation import check_choice, check_materials, check_positive, check_proportions
+from fem_reference.validation import (
+    check_ball,
+    check_choice,
+    check_materials,
+    check_positive,
+    check_proportions,
+)
 
 MARGIN = 1.04  # of the contact up to the last node below the pressure, and as much before the first
-WIDEST = 8.0  # radius in which the contact is looked for, over that of Hertz's sphere
-QUALITIES = {"fast": (0.5, 0.12, 120), "default": (0.44, 0.06, 240), "fine": (0.4, 0.05, 288)}
+# Size of the triangles, of those on the surface, harmonics, degree of the polynomial in the pressure over the
+# number of waves around, which counts as 2 at least
+QUALITIES = {"fast": (0.5, 0.12, 120, 4), "default": (0.44, 0.045, 240, 6), "fine": (0.4, 0.035, 288, 6)}
 # Times the number of waves as wide as the contact at its end on y = 0, as deep inside as the triangles there.
 AT_END = 5.0
 STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish
-WAVES = 4e-5  # of the peak, by short waves of the pressure given: 5e-5 in one of 30 ellipses, on both meshes
-SAFETY = 2.0  # of the change from the companion
+COARSER = 1.3  # triangles of the companion over those of the mesh
+# Roache's grid convergence index for two meshes, times the change from the companion: of what the conditions
+# give, with their order, and of fields, with that observed beside edges, which no mesh follows
+SAFETY, ORDER = 3.0, (WEIGHT + 5) / 2
+BY_CONDITIONS, OF_FIELDS = SAFETY / (COARSER**ORDER - 1), 2.0
 # times as much on the axis, where integrals in r dr hold the fields least; so far around it
 AXIS = 2.25, 0.15
 RESOLVED = 1 / 8  # of an element's width
-COARSER = 1.3  # triangles of the companion over those of the mesh
 CORRECTING = 96  # of the harmonics, that correct the pressure
-FEWER = 0.7  # of these, for the change by what is beyond them
+ROUGH_DEGREE, LOWER = 4, 2  # degree on the rough mesh; by which that of the companion is lowered
+ROUNDS = 12  # of rough meshes, each wider where the contact leaves it
+ENOUGH_ROUGH = 1e-4  # change of the rough edge in the last step
 TYPICAL = 97  # per cent of points below the contact whose stress changes less from the companion
 SAMPLES = 8, 3, 7  # of such points by radius, angle and depth
+
+
+@dataclass(frozen=True)
+class ShapedGrid:
+    """Size of the triangles, the last harmonic, and how the mesh is wider than the contact."""
+
+    size: float
+    surface: float
+    harmonics: int
+    margin: float
+    density: float
+
+
+ROUGH = ShapedGrid(0.6, 0.16, 36, 1.3, DENSITY / 2)
 
 
 @dataclass(frozen=True)
@@ -64,7 +91,9 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
+    lower : pressure of a lower degree on the companion's mesh
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
+    opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
 
     contact_radius: float
@@ -77,14 +106,18 @@ class ShapedContact(PressedSolid):
     uncertainty: Uncertainty | None
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
+    lower: StarPressure | None = field(default=None, repr=False)
     typical: float = 0.0
+    opposite: "ShapedContact | None" = field(default=None, repr=False)
     frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
+    coarser: ClassVar = None  # the companion is no solution of its own
 
     def sample(self, points: Any, quantity: str, uncertainty: bool = True) -> ElementAnswer:
         """Value of a quantity at points, with its uncertainty when it was estimated.
 
         Arguments as of ``PressedSolid.sample``; a scalar is contact_radius, approach, peak_pressure, extent_x
-        or extent_y. The stress has the error of the pressure too, the displacement that of the approach.
+        or extent_y. The stress has the error of the pressure too, on the surface where it acts, the
+        displacement that of the approach.
         """
         stated = uncertainty and self.uncertainty is not None and self._coarse is not None
         scalars = ("contact_radius", "approach", "peak_pressure", "extent_x", "extent_y")
@@ -94,6 +127,9 @@ class ShapedContact(PressedSolid):
             )
         if quantity == "pressure":
             return self._pressure(points, stated)
+        if getattr(points, "body", "flat") == "ball" and self.opposite is not None:
+            on_ball = ElementPoints(points.x, points.y, points.z, points.layer, "flat", points.frame)
+            return self.opposite.sample(on_ball, quantity, uncertainty)
         value, U = super().sample(points, quantity, stated)
         if not stated or U is None:
             return ElementAnswer(value)
@@ -102,9 +138,10 @@ class ShapedContact(PressedSolid):
         x, y = points.x, points.y
         smeared = np.where(np.asarray(points.z) == 0, self._smeared(x, y), 0.0)
         distance = np.hypot(x, y) / (AXIS[1] * self._units.length)
-        safety = SAFETY * (1 + (AXIS[0] - 1) * np.maximum(1 - distance, 0))
-        floor = self._errors[2] + smeared
-        return ElementAnswer(value, np.maximum(safety * U, SAFETY * self.typical) + floor)
+        safety = OF_FIELDS * (1 + (AXIS[0] - 1) * np.maximum(1 - distance, 0))
+        of_pressure = np.where(np.asarray(points.z) == 0, self._uncertain_pressure(x, y), 0.0)
+        change = np.maximum(safety * U, OF_FIELDS * self.typical)
+        return ElementAnswer(value, np.maximum(change, of_pressure) + self._errors[2] + smeared)
 
     @property
     def _errors(self) -> tuple[float, ...]:
@@ -142,148 +179,217 @@ class ShapedContact(PressedSolid):
         return np.where(on_series, 0.0, (1 - 2 * nu) / (1 - nu) * np.max(missed, axis=0))
 
     def _pressure(self, points: Any, stated: bool) -> ElementAnswer:
-        """Pressure [Pa], uncertain by the change from the companion and that of the peak."""
+        """Pressure [Pa], uncertain by the changes as far from the edge and, at fixed points, there too."""
         p = self._given(points)
-        if not stated or self._coarse is None:
+        if not stated or self._coarse is None or self.lower is None:
             return ElementAnswer(p)
-        at = (v / self._units.length for v in self._matching(points))
-        other = np.asarray(self._coarse.pressure(*at)) * self._units.pressure
-        return ElementAnswer(p, SAFETY * np.abs(p - other) + self._errors[2])
+        U = self._uncertain_pressure(points.x, points.y)
+        companion, lower = (self._other(points, one) for one in (self._coarse.pressure, self.lower))
+        here = BY_CONDITIONS * np.abs(p - companion) + np.abs(companion - lower)
+        return ElementAnswer(p, np.maximum(here, U))
 
-    def _matching(self, points: Any) -> tuple[Any, Any]:
+    def _uncertain_pressure(self, x: Any, y: Any) -> np.ndarray:
+        """Uncertainty of the pressure [Pa] at points as far from the edge as x, y; 0 outside."""
+        w, tau = self._fine.pressure.polar(*(np.asarray(v) / self._units.length for v in (x, y)))
+        found = self._changes_inwards(np.stack([np.minimum(w, 1), tau], axis=-1))
+        return np.where(w < 1, found, 0.0)
+
+    @cached_property
+    def _changes_inwards(self) -> RegularGridInterpolator:
+        """Largest change [Pa] near w, tau: by the companion, and by the degree of the pressure.
+
+        All at the same w, the share of the way to the own edge. A change at one point may be small by chance:
+        within one wave of the polynomial around the contact, and next to w, the largest counts.
+        """
+        assert self._coarse is not None
+        assert self.lower is not None
+        pressures = self._fine.pressure, self._coarse.pressure, self.lower
+        w, turn = 1 - np.geomspace(1, 1e-4, 60), np.linspace(0, np.pi, 97)
+        fine, companion, lower = (one(*one.points(w[:, None], turn)) for one in pressures)
+        change = BY_CONDITIONS * np.abs(fine - companion) + np.abs(companion - lower)
+        wave = 2 * round(turn.size / self._fine.pressure.degree) + 1
+        largest = maximum_filter(change, (5, wave), mode=("nearest", "mirror")) * self._units.pressure
+        return RegularGridInterpolator((np.append(w, 1.0), turn), np.vstack([largest, largest[-1:]]))
+
+    def _other(self, points: Any, pressure: StarPressure) -> np.ndarray:
+        """Another pressure [Pa] at the points that are compared."""
+        x, y = (v / self._units.length for v in self._matching(points, pressure))
+        return np.asarray(pressure(x, y) * self._units.pressure)
+
+    def _matching(self, points: Any, other: StarPressure) -> tuple[Any, Any]:
+        """Points [m] of the ``other`` pressure that are compared with x, y."""
         x, y = np.broadcast_arrays(np.asarray(points.x, dtype=float), np.asarray(points.y, dtype=float))
         at_edge = np.asarray(points.frame) == "edge"
         if not at_edge.any():
             return x, y
-        pair, L = [one.pressure for one in (self._fine, self._coarse) if one], self._units.length
-        fine, other = (one for one in pair if isinstance(one, StarPressure))
-        X, Y = fine.matching(other, x / L, y / L)
+        L = self._units.length
+        X, Y = self._fine.pressure.matching(other, x / L, y / L)
         return np.where(at_edge, L * X, x), np.where(at_edge, L * Y, y)
 
 
 def solve_shape(
     *,
     indenter: Indenter,
-    start: Callable[[Any, Any], Any],
     radius: float,
     load: float,
     coatings: Coatings,
     substrate: tuple[float, float],
     friction: float = 0.0,
+    ball: tuple[float, float, Coatings] | None = None,
     quality: str = "default",
     harmonics: int | None = None,
     order: int = 4,
     size: float | None = None,
     surface: float | None = None,
     far: float = 1000.0,
+    degree: int | None = None,
+    first: float = 1.0,
     estimate_uncertainty: bool = True,
 ) -> ShapedContact:
     """Indenter of another shape than a sphere on a coated half-space, as in ``solve``.
 
-    indenter : shape and numbers, see ``indenter_height``.  start : p(x, y) [Pa] of arrays [m], by another
-    method
+    indenter : shape and numbers, see ``touching_shape``.   ball : the solid of an elastic one
     size, surface : of the triangles over their distance from the contact; on the surface below it over its
     extent.  quality : "fast", "default" or "fine"; sets size, surface and harmonics that are not given, more
     of them for a contact with pointed ends on y = 0
-    Raises ValueError for bad input, NotConverged where the correction does not end.
+    degree : of the polynomial in the pressure.   first : axes of the first contact over Hertz's
+    Raises ValueError for bad input, NotConverged where no such contact is found.
     """
     began = time.perf_counter()
     check_choice("quality", quality, tuple(QUALITIES))
     usual = QUALITIES[quality]
     size, surface = usual[0] if size is None else size, usual[1] if surface is None else surface
-    check_positive(radius=radius, load=load, far=far, size=size, surface=surface)
+    check_positive(radius=radius, load=load, far=far, size=size, surface=surface, first=first)
     check_materials(coatings, substrate, friction)
     check_choice("order", order, (2, 3, 4))
-    height, fold = indenter_height(indenter, radius)
-    E, nu = substrate
-    widest = WIDEST * (0.75 * load * radius * (1 - nu**2) / E) ** (1 / 3)
-    if indenter[0] == "asperities":
-        widest += indenter[1][0]
-    pressure = StarPressure.of(start, fold, widest)
-    # six digits, lest the mesh follow the rounding of the pressure given
-    nearest, farthest = pressure.reach
-    reach = float(f"{MARGIN * farthest:.6g}")
-    unit = Units(length=reach, pressure=E, modulus=E)
-    solid = LayeredSolid.scaled(coatings, substrate, reach, far, E)
-    check_proportions(solid.thicknesses, "the contact's extent")
-    scaled = pressure.scaled(reach, E)
-    inner = max(0.0, nearest / reach - (MARGIN - 1))
+    if ball is not None:
+        check_ball(ball)
+    shape = touching_shape(indenter, radius)
+    E = substrate[0]
+    layers = [(coatings, substrate)] + ([(ball[2], ball[:2])] if ball else [])
+    compliance = sum((1 - nu**2) / modulus for _, (modulus, nu) in layers)
+    half = load / 2 if shape.centre else load
+    waves = max(shape.fold, 2)
+    axes = hertz_axes(shape.curvatures, half, compliance)
+    begin = StarPressure.of_ellipse(
+        shape.centre, (first * axes[0], first * axes[1]), load / E, shape.fold, ROUGH_DEGREE
+    )
+    degree = usual[3] * waves if degree is None else degree
 
+    def solids(reach: float) -> tuple[LayeredSolid, ...]:
+        scaled = tuple(LayeredSolid.scaled(*one, reach, far, E) for one in layers)
+        widest = max(one.far for one in scaled)
+        for one, name in zip(scaled, ("", "ball "), strict=False):
+            check_proportions(one.thicknesses, "the contact's extent", name)
+        return tuple(replace(one, far=widest) for one in scaled)
+
+    def on_mesh(reach: float, grid: ShapedGrid, begin: StarPressure, enough: float = ENOUGH) -> Closed:
+        """The contact [reach] on a mesh to the radius ``reach`` [m]."""
+        start = begin.scaled(reach)
+        # vertices at the radii of the edge on y = 0 and of its sides, none right beside another
+        radii = sorted({round(abs(x), 4) for x in (*start.edges, start.extents[1])})
+        pairs = zip(radii, [0.0, *radii], strict=False) if grid is not ROUGH else ()
+        apart = tuple(r for r, before in pairs if r - before > grid.surface / 10)
+        bodies = solids(reach)
+        stacks = tuple(one.thicknesses for one in bodies)
+        inner = max(0.0, start.reach[0] - (grid.margin - 1))
+        compliances = tuple(
+            harmonic_compliance(
+                one,
+                discretised(one, grid.size, grid.surface, order, growth=0.7, edges=apart, stacks=stacks),
+                grid.harmonics,
+                shape.turns,
+                grid.density,
+                inner,
+            )
+            for one in bodies
+        )
+        return closed(compliances, start, *arguments(reach, grid), enough)
+
+    def arguments(reach: float, grid: ShapedGrid) -> tuple[Height, float, int]:
+        return shape.scaled(reach), load / (E * reach**2), min(CORRECTING, grid.harmonics)
+
+    for _ in range(ROUNDS):
+        reach = ROUGH.margin * begin.reach[1]
+        rough = on_mesh(reach, ROUGH, begin, ENOUGH_ROUGH)
+        begin = rough.pressure.scaled(1 / reach)
+        if rough.converged:
+            break
+    rough.check_rest(indenter[0])
+    # six digits, lest the mesh follow the rounding
+    reach = float(f"{MARGIN * begin.reach[1]:.6g}")
     if harmonics is None:
-        waves = np.pi / scaled.end_angle(float(surface_size(surface, 0.0)))
-        harmonics = fold * int(np.ceil(usual[2] / fold * max(1.0, AT_END * waves / QUALITIES["default"][2])))
+        at_end = np.pi / begin.scaled(reach).end_angle(float(surface_size(surface, 0.0)))
+        fold = shape.turns
+        harmonics = fold * int(np.ceil(usual[2] / fold * max(1.0, AT_END * at_end / QUALITIES["default"][2])))
     check_positive(harmonics=harmonics)
-    correcting = min(CORRECTING, harmonics)
+    unit = Units(length=reach, pressure=E, modulus=E)
 
-    def scaled_height(x: Any, y: Any) -> Any:
-        return height(x * reach, y * reach) / reach
-
-    def on_mesh(coarser: float, begin: StarPressure) -> tuple[OffAxisFields, Corrected, np.ndarray]:
-        # vertices at the radii of the edge on y = 0, none right beside another
-        radii = sorted(round(abs(x), 4) for x in begin.edges)
-        apart = tuple(r for r, before in zip(radii, [0.0, *radii], strict=False) if r - before > surface / 10)
-        d = discretised(solid, coarser * size, coarser * surface, order, growth=0.7, edges=apart)
-        compliance = harmonic_compliance(solid, d, harmonics, fold, DENSITY / coarser, inner)
-        found = corrected(compliance, begin, scaled_height, load / unit.load, correcting)
-        if not found.converged:
-            raise NotConverged(
-                f"the pressure under the {indenter[0]} is not settled after {found.steps} corrections; "
-                "the start is too far from it, or its contact is not star-shaped"
-            )
-        p = found.pressure
-        fields = OffAxisFields.of(compliance, found.nodal_loads, friction, p, p.edges, coarser * surface)
-        beyond = np.zeros(5)
-        if coarser > 1:
-            fewer = corrected(
-                compliance, found.pressure, scaled_height, load / unit.load, int(FEWER * correcting)
-            )
-            beyond = np.abs(_numbers(fewer) - _numbers(found))
-        return fields, found, beyond
-
-    fine, found, _ = on_mesh(1.0, scaled)
-    numbers, residual = _numbers(found), found.residual(scaled_height)
-    coarse, uncertainty, extents = None, None, None
+    grid = ShapedGrid(size, surface, harmonics, MARGIN, DENSITY)
+    found = on_mesh(reach, grid, begin.of_degree(degree))
+    found.check(shape.scaled(reach), indenter[0])
+    numbers, residual = _numbers(found), found.residual(shape.scaled(reach))
+    sliding = (friction, -friction)
+    fine = [_fields(found, k, sliding[k], surface) for k in range(len(layers))]
+    coarse: list[OffAxisFields | None] = [None] * len(layers)
+    uncertainty, extents, lower = None, None, None
     if estimate_uncertainty:
-        coarse, companion, beyond = on_mesh(COARSER, found.pressure)
-        change = SAFETY * np.abs(numbers - _numbers(companion))
-        stiff = STIFF * (size / QUALITIES["default"][0]) ** 4
-        change[1:3] = np.maximum(change[1:3], np.array([stiff, WAVES]) * numbers[1:3])
-        left = residual * np.abs(numbers)
+        coarser = ShapedGrid(COARSER * size, COARSER * surface, harmonics, MARGIN, DENSITY / COARSER)
+        start = found.pressure.scaled(1 / reach)
+        companion = on_mesh(reach, coarser, start)
+        fewer = companion.of_degree(degree - LOWER, *arguments(reach, coarser))
+        lower = fewer.pressure
+        coarse = [_fields(companion, k, sliding[k], COARSER * surface) for k in range(len(layers))]
+        change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
+        change[1] = max(change[1], STIFF * (size / QUALITIES["default"][0]) ** 4 * numbers[1])
+        cut = np.abs(_numbers(companion) - _numbers(fewer))
+        left = np.maximum(residual, OF_FIELDS * found.errors) * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
-        parts = (("element size", change), ("harmonics", beyond), ("gap left", left))
+        parts = (("element size", change), ("degree of the pressure", cut), ("gap left", left))
         budget = tuple(
             (name, what, float(part[k] * units[k])) for k, name in enumerate(names) for what, part in parts
         )
-        total = (change + beyond + left) * units
+        total = np.sqrt(sum(part**2 for _, part in parts)) * units
         uncertainty = Uncertainty(float(total[0]), float(total[1]), float(total[2]), budget)
         extents = float(total[3]), float(total[4])
-    d = fine.discretisation
+    d = fine[0].discretisation
     nodes = np.linspace(0, 2.6 * found.pressure.extents[0], 160)
-    return ShapedContact(
-        fine,
-        coarse,
-        unit,
-        contact_radius=float(numbers[0]) * reach,
-        approach=float(numbers[1]) * reach,
-        peak_pressure=float(numbers[2]) * E,
-        extent_x=float(numbers[3]) * reach,
-        extent_y=float(numbers[4]) * reach,
-        surface_nodes=np.concatenate([-nodes[:0:-1], nodes]) * reach,
-        diagnostics=ShapedDiagnostics(
-            steps=found.steps,
-            harmonics=harmonics,
-            dofs=3 * d.N,
-            triangles=int(d.mesh.layer.size),
-            residual_gap=residual,
-            residual_load=abs(fine.load * unit.load / load - 1),
-            seconds=time.perf_counter() - began,
-        ),
-        uncertainty=uncertainty,
-        extent_uncertainty=extents,
-        height=height,
-        typical=_typical(PressedSolid(fine, coarse, unit)) if coarse else 0.0,
-    )
+    sides: list[ShapedContact] = []
+    for k in range(len(layers))[::-1]:
+        pair = fine[k], coarse[k]
+        sides.append(
+            ShapedContact(
+                *pair,
+                unit,
+                contact_radius=float(numbers[0]) * reach,
+                approach=float(numbers[1]) * reach,
+                peak_pressure=float(numbers[2]) * E,
+                extent_x=float(numbers[3]) * reach,
+                extent_y=float(numbers[4]) * reach,
+                surface_nodes=np.concatenate([-nodes[:0:-1], nodes]) * reach,
+                diagnostics=ShapedDiagnostics(
+                    steps=rough.steps + found.steps,
+                    harmonics=harmonics,
+                    dofs=3 * d.N,
+                    triangles=int(d.mesh.layer.size),
+                    residual_gap=residual,
+                    residual_load=abs(fine[0].load * unit.load / load - 1),
+                    seconds=time.perf_counter() - began,
+                ),
+                uncertainty=uncertainty,
+                extent_uncertainty=extents,
+                height=shape.height,
+                lower=lower,
+                typical=_typical(PressedSolid(*pair, unit)) if estimate_uncertainty else 0.0,
+                opposite=sides[0] if sides else None,
+            )
+        )
+    return sides[-1]
+
+
+def _fields(found: Closed, body: int, friction: float, surface: float) -> OffAxisFields:
+    return OffAxisFields.of(found.compliances[body], found.nodal_loads, friction, found.pressure, surface)
 
 
 def _typical(solid: PressedSolid) -> float:
@@ -299,7 +405,7 @@ def _typical(solid: PressedSolid) -> float:
     return float(np.percentile(U[0, 0], TYPICAL))
 
 
-def _numbers(found: Corrected) -> np.ndarray:
+def _numbers(found: Closed) -> np.ndarray:
     """Contact radius, approach, peak pressure, extents; scaled."""
     p = found.pressure
     return np.array([np.sqrt(p.area / np.pi), found.approach, p.peak, *p.extents])

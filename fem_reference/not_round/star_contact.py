@@ -1,145 +1,174 @@
-"""Pressure on a contact that is star-shaped about its centre, corrected until the gap inside it vanishes.
+"""Contour and pressure of a contact that is star-shaped about its centre.
 
-By hand: no package solves a contact by the compliance of one meridian plane.
+In the plane stretched by the half axes A_x, A_y of the contact,  X = (x - centre)/A_x,  Y = y/A_y,  with the
+polar coordinates w R(tau), tau, in which w = 1 is the edge,
 
-With the edge at r = R(tau) about the centre and s = r/R, a pressure p is corrected by moving its edge to
-R (1 + c_n cos(n tau)) and by
+    R(tau) = 1 + sum_n c_n cos(n tau),   s = w R(tau) / (1 + sum_n c_n w^n cos(n tau)),
+    p = sqrt(1 - s^2) sum_nj b_nj s^n T_j(2 s^2 - 1) cos(n tau),   n + 2 j <= degree.
 
-    sqrt(1 - s^2) s^(n + 2 j) cos(n tau),   n + 2 j <= DEGREE,
-
-until the gap  u_z + height - approach  has no product with any  (1 - s^2)^1.5 s^(n + 2 j) cos(n tau),
-n + 2 j <= DEGREE + 2, inside: as many conditions as there are unknowns, once the load is given. The weight
-leaves out the edge, where finite elements are too stiff. Newton's method, with the derivatives of
-p = p0 sqrt(1 - s^2); elements give u_z, so the pressure found is theirs. What is left of the gap is the error
-that functions of this degree do not reach.
+The powers w^n make s a smooth coordinate at the centre, where that of R alone has no second derivative. Of an
+ellipse all c_n vanish, and p is a polynomial in X and Y times the root of Hertz's pressure.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
 
 from fem_reference.elasticity.line_quadrature import gauss_legendre
-from fem_reference.not_round.harmonic_compliance import HarmonicCompliance
 
-Pressure = Callable[[Any, Any], Any]
-
-DEGREE = 2
-RADIAL = 10  # points between two vertices of the surface
+RADIAL = 6  # points between two vertices of the surface
 ANGULAR = 24, 1.6  # points on an arc inside the contact: some, and more for each harmonic
 SAMPLES = 256  # on half a circle, between which an arc begins or ends
-WAVES, LEFT_OUT = 128, 1e-12  # of the cosine series of 1/R^2; 64 leave 1e-3 of p0 at the end of a coated one
 BISECTIONS = 48
-STEPS, ENOUGH, CLOSE = 8, 3e-7, 1e-4  # change of the edge in the last step, and in one that failed
-TOUCHING = 1e-5  # of the largest pressure on the axis of symmetry: p above counts as contact
-LARGEST = 0.2  # change of the edge in one step
+
+
+def hertz_axes(curvatures: tuple[float, float], load: float, compliance: float) -> tuple[float, float]:
+    """Half axes along x and y of the contact of bare bodies; K. L. Johnson, Contact Mechanics, section 4.2.
+
+    curvatures : of the gap along x and y [1/m].   compliance : 1/E* of both bodies together
+    """
+    low, high = sorted(curvatures)
+    if high - low < 1e-9 * high:
+        a = (0.75 * load * compliance / high) ** (1 / 3)
+        return a, a
+
+    def ratio(q: float) -> float:
+        # of the curvatures across and along an ellipse a : b = exp(q)
+        m = -np.expm1(-2 * q)
+        return float((np.exp(2 * q) * ellipe(m) - ellipk(m)) / (ellipk(m) - ellipe(m)))
+
+    q = brentq(lambda q: ratio(q) - high / low, 1e-6, np.log(high / low) + 1.0, xtol=1e-12)
+    m = -np.expm1(-2 * q)
+    along = (3 * load * compliance * (ellipk(m) - ellipe(m)) / (np.pi * m * low)) ** (1 / 3)
+    axes = float(along), float(along * np.exp(-q))
+    return axes if curvatures[0] <= curvatures[1] else axes[::-1]
 
 
 @dataclass(frozen=True, eq=False)
 class StarPressure:
-    """A ``given`` pressure with its edge moved and with smooth terms added; lengths and pressure scaled.
+    """Pressure on a star-shaped contact, or on two that are mirror images of each other.
 
-    centre : x of the centre, whose mirror image at -x counts too unless it is 0.  fold : of the symmetry
-    contour : coefficients of 1/R^2 by cos(k tau).  edge : c_n of the ``waves``.  coefficients : of the
+    centre : x of the centre, whose mirror image at -x counts too unless it is 0.  axes : A_x, A_y
+    fold : n of the symmetry by turns of 2 pi/n.  contour : c_n of the ``waves``.  coefficients : b of the
     ``terms``
     """
 
-    given: Pressure
     centre: float
+    axes: tuple[float, float]
     fold: int
+    degree: int
     contour: np.ndarray
-    edge: np.ndarray
     coefficients: np.ndarray
 
     @classmethod
-    def of(cls, given: Pressure, fold: int, reach: float) -> "StarPressure":
-        """The ``given`` pressure itself, which is zero beyond ``reach``.
+    def of_ellipse(
+        cls, centre: float, axes: tuple[float, float], load: float, fold: int, degree: int
+    ) -> "StarPressure":
+        """Hertz's pressure under ``load`` on an ellipse."""
+        empty = cls(centre, axes, fold, degree, np.zeros(0), np.zeros(0))
+        b = np.zeros(len(empty.terms(degree)))
+        b[0] = 1.5 * load / (np.pi * axes[0] * axes[1]) / (2 if centre else 1)
+        return replace(empty, contour=np.zeros(len(empty.waves)), coefficients=b)
 
-        Raises ValueError where it is zero at the origin and no single contact lies on either side.
-        """
-        centre, x = 0.0, np.linspace(0, reach, 2001)
-        along = given(x, 0 * x)
-        least = TOUCHING * float(along.max())
-        if not along[0] > least:
-            inside = np.flatnonzero(along > least)
-            if inside.size == 0 or np.any(np.diff(inside) > 1):
-                raise ValueError("the contact is neither one region around the origin nor two beside it")
-            centre, fold = float(x[inside].mean()), 1
-        tau = np.pi * (np.arange(4 * WAVES) + 0.5) / (4 * WAVES)
-        low, high = np.zeros(tau.size), np.full(tau.size, 2 * reach)
-        for _ in range(BISECTIONS):
-            r = (low + high) / 2
-            at = centre + r * np.cos(tau)
-            loaded = (given(at, r * np.sin(tau)) > least) & ((at > 0) | (centre == 0))
-            low, high = np.where(loaded, r, low), np.where(loaded, high, r)
-        k = np.arange(WAVES)
-        series = np.cos(k[:, None] * tau) @ low**-2 * np.where(k > 0, 2, 1) / tau.size
-        contour = np.polynomial.chebyshev.chebtrim(series, LEFT_OUT * series[0])
-        empty = cls(given, centre, fold, contour, np.zeros(0), np.zeros(0))
-        return replace(
-            empty, edge=np.zeros(len(empty.waves)), coefficients=np.zeros(len(empty.terms(DEGREE)))
-        )
-
-    @property
+    @cached_property
     def waves(self) -> tuple[int, ...]:
-        return tuple(range(0, DEGREE + 3, self.fold))
+        """n of the contour."""
+        return tuple(range(0, self.degree + 1, self.fold))
 
     def terms(self, degree: int) -> tuple[tuple[int, int], ...]:
         """(n, j) with n + 2 j up to ``degree``."""
         return tuple((n, j) for n in range(0, degree + 1, self.fold) for j in range((degree - n) // 2 + 1))
 
     def polynomials(self, s: np.ndarray, tau: np.ndarray, degree: int) -> np.ndarray:
-        """s^(n + 2 j) cos(n tau) of the terms, (terms,) + points."""
-        return np.array([s ** (n + 2 * j) * np.cos(n * tau) for n, j in self.terms(degree)])
+        """s^n T_j(2 s^2 - 1) cos(n tau) of the terms, (terms,) + points."""
+        T = np.polynomial.chebyshev.chebvander(2 * s**2 - 1, degree // 2)
+        waves = {n: s**n * np.cos(n * tau) for n in range(0, degree + 1, self.fold)}
+        return np.array([waves[n] * T[..., j] for n, j in self.terms(degree)])
 
     def edge_at(self, tau: np.ndarray) -> np.ndarray:
-        """Distance of the moved edge from the centre."""
-        given = np.polynomial.chebyshev.chebval(np.cos(tau), self.contour) ** -0.5
-        return given * (1 + self._shift(np.ones(tau.shape), tau))
+        """R(tau), in the stretched plane."""
+        return 1 + np.tensordot(self.contour, [np.cos(n * tau) for n in self.waves], 1)
 
-    def _shift(self, s: np.ndarray, tau: np.ndarray) -> np.ndarray:
-        """Relative change of r of the points s of the given pressure; regular at the centre."""
-        total = np.zeros(s.shape)
-        for n, c in zip(self.waves, self.edge, strict=True):
-            total = total + c * s ** (2 if n else 0) * np.cos(n * tau)
-        return total
+    def polar(self, x: Any, y: Any) -> tuple[np.ndarray, np.ndarray]:
+        """w, tau of points; w = 1 is the edge."""
+        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+        X, Y = ((np.abs(x) if self.centre else x) - self.centre) / self.axes[0], np.abs(y) / self.axes[1]
+        tau = np.arctan2(Y, X)
+        return np.hypot(X, Y) / self.edge_at(tau), tau
+
+    def points(self, w: np.ndarray, tau: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """x and y of w, tau, of the contact on x > 0 where there are two."""
+        r = w * self.edge_at(tau)
+        return self.centre + self.axes[0] * r * np.cos(tau), self.axes[1] * r * np.sin(tau)
+
+    def smooth(self, w: np.ndarray, tau: np.ndarray) -> np.ndarray:
+        """The coordinate s of w, tau."""
+        moved = np.tensordot(self.contour, [w**n * np.cos(n * tau) for n in self.waves], 1)
+        return np.asarray(w * self.edge_at(tau) / (1 + moved))
 
     def __call__(self, x: Any, y: Any) -> np.ndarray:
         """p; x and y broadcast."""
-        x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
-        x = (np.abs(x) if self.centre else x) - self.centre
-        r, tau = np.hypot(x, y), np.arctan2(np.abs(y), x)
-        s = r / self.edge_at(tau)
-        r = r / (1 + self._shift(np.minimum(s, 1.0), tau))
-        p = np.asarray(self.given(self.centre + r * np.cos(tau), r * np.sin(tau)), dtype=float)
-        if not self.coefficients.any():
-            return p
-        added = np.tensordot(self.coefficients, self.polynomials(np.minimum(s, 1.0), tau, DEGREE), 1)
-        return np.where(s < 1, np.maximum(p + np.sqrt(np.maximum(1 - s**2, 0)) * added, 0), 0)
+        w, tau = self.polar(x, y)
+        inside = w < 1
+        p = np.zeros(w.shape)
+        s = np.minimum(self.smooth(w[inside], tau[inside]), 1)
+        p[inside] = np.sqrt(1 - s**2) * np.tensordot(
+            self.coefficients, self.polynomials(s, tau[inside], self.degree), 1
+        )
+        return p
+
+    def moved(self, c: np.ndarray, coefficients: np.ndarray) -> "StarPressure":
+        """With the edge moved by c_n of the waves, those of an ellipse as centre and axes."""
+        by = dict(zip(self.waves, c, strict=True))
+        zero, one, two = (by.get(n, 0.0) for n in (0, 1, 2))
+        axes = self.axes[0] * (1 + zero + two), self.axes[1] * (1 + zero - two)
+        rest = self.contour + np.where(np.array(self.waves) > 2, c, 0.0)
+        return replace(
+            self, centre=self.centre + self.axes[0] * one, axes=axes, contour=rest, coefficients=coefficients
+        )
+
+    def of_degree(self, degree: int) -> "StarPressure":
+        """The same as a polynomial of another degree; terms beyond it are left out."""
+        known = dict(zip(self.terms(self.degree), self.coefficients, strict=True))
+        c, empty = dict(zip(self.waves, self.contour, strict=True)), replace(self, degree=degree)
+        b = np.array([known.get(one, 0.0) for one in self.terms(degree)])
+        return replace(empty, contour=np.array([c.get(n, 0.0) for n in empty.waves]), coefficients=b)
+
+    def scaled(self, length: float) -> "StarPressure":
+        """The same in units of ``length``."""
+        axes = self.axes[0] / length, self.axes[1] / length
+        return replace(self, centre=self.centre / length, axes=axes)
 
     def matching(self, other: "StarPressure", x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Points as far from the edge of the ``other`` as x, y are from this; inside by shares of the way."""
-        s, tau = self._polar(x, y)
-        r = s * self.edge_at(tau) + np.minimum(s, 1) * (other.edge_at(tau) - self.edge_at(tau))
-        sides = np.where(x < 0, -1, 1) if self.centre else 1
-        return sides * (other.centre + r * np.cos(tau)), np.where(y < 0, -1, 1) * r * np.sin(tau)
+        w, tau = self.polar(x, y)
+        at, edge, other_edge = (
+            np.array(one.points(v, tau)) for one, v in ((self, w), (self, 1 + 0 * w), (other, 1 + 0 * w))
+        )
+        X, Y = np.where(w < 1, np.array(other.points(np.minimum(w, 1), tau)), at + other_edge - edge)
+        return np.where((x < 0) & (self.centre != 0), -1, 1) * X, np.where(y < 0, -1, 1) * Y
 
-    def quadrature(self, compliance: HarmonicCompliance, last: int) -> "Quadrature":
-        """Points on half circles about the origin between the vertices, for harmonics to ``last``.
+    def quadrature(self, vertices: np.ndarray, last: int) -> "Quadrature":
+        """Points on half circles about the origin between the ``vertices``, for harmonics to ``last``.
 
         By Gauss-Legendre on the arcs inside the contact, towards whose ends p falls like a square root.
         """
-        vertices = compliance.nodes[:: compliance.discretisation.order]
         r, of_r = gauss_legendre(RADIAL, vertices[:-1], vertices[1:])
         theta = np.pi * np.arange(SAMPLES + 1) / SAMPLES
-        inside = self._inside(r[:, None], theta) > 0
+
+        def within(r: np.ndarray, theta: np.ndarray) -> np.ndarray:
+            return self.polar(r * np.cos(theta), r * np.sin(theta))[0] < 1
+
+        inside = within(r[:, None], theta)
         ring, place = np.nonzero(inside[:, 1:] != inside[:, :-1])
         low, high = theta[place], theta[place + 1]
         for _ in range(BISECTIONS):
             middle = (low + high) / 2
-            same = (self._inside(r[ring], middle) > 0) == inside[ring, place]
+            same = within(r[ring], middle) == inside[ring, place]
             low, high = np.where(same, middle, low), np.where(same, high, middle)
         rings = np.concatenate([ring, *(np.flatnonzero(inside[:, end]) for end in (0, -1))])
         ends = np.concatenate([low, np.zeros(inside[:, 0].sum()), np.full(inside[:, -1].sum(), np.pi)])
@@ -151,166 +180,73 @@ class StarPressure:
         x, y = r[arc, None] * np.cos(angle), r[arc, None] * np.sin(angle)
         weights = 2 * (of_r * r)[arc, None] * of_angle
         x, y, weights = x.ravel(), y.ravel(), weights.ravel()
-        s, tau = self._polar(x, y)
-        return Quadrature(r[arc], angle, np.minimum(s, 1 - 1e-14), tau, x, y, weights)
+        w, tau = self.polar(x, y)
+        w = np.minimum(w, 1 - 1e-14)
+        s = np.minimum(self.smooth(w, tau), 1 - 1e-14)
+        return Quadrature(r[arc], angle, w, s, tau, x, y, weights)
 
-    def _inside(self, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
-        """Positive inside the contact."""
-        return 1 - self._polar(r * np.cos(theta), r * np.sin(theta))[0]
-
-    def _polar(self, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """s and tau."""
-        x = (np.abs(x) if self.centre else x) - self.centre
-        tau = np.arctan2(np.abs(y), x)
-        return np.hypot(x, y) / self.edge_at(tau), tau
+    @property
+    def contour_points(self) -> tuple[np.ndarray, np.ndarray]:
+        """x and y along the edge, from the end on x > 0."""
+        tau = np.linspace(0, np.pi, 1441)
+        return self.points(np.ones(tau.size), tau)
 
     @property
     def area(self) -> float:
         tau = np.pi * (np.arange(720) + 0.5) / 720
-        return float(np.pi * np.mean(self.edge_at(tau) ** 2) * (2 if self.centre else 1))
-
-    @property
-    def _contour(self) -> tuple[np.ndarray, np.ndarray]:
-        """x and y along the edge, from the end on x > 0."""
-        tau = np.linspace(0, np.pi, 1441)
-        R = self.edge_at(tau)
-        return self.centre + R * np.cos(tau), R * np.sin(tau)
+        return float(np.pi * np.prod(self.axes) * np.mean(self.edge_at(tau) ** 2) * (2 if self.centre else 1))
 
     @property
     def reach(self) -> tuple[float, float]:
         """Least and largest distance of the contact from the origin."""
-        distance = np.hypot(*self._contour)
+        distance = np.hypot(*self.contour_points)
         return float(distance.min()) if self.centre else 0.0, float(distance.max())
-
-    def scaled(self, length: float, pressure: float) -> "StarPressure":
-        """The same, not corrected yet, in these units."""
-
-        def given(x: Any, y: Any) -> np.ndarray:
-            return np.asarray(self.given(np.asarray(x) * length, np.asarray(y) * length)) / pressure
-
-        return replace(self, given=given, centre=self.centre / length, contour=self.contour * length**2)
 
     @property
     def edges(self) -> tuple[float, ...]:
         """x at which the edge crosses the axis y = 0."""
-        ahead, behind = self.edge_at(np.array([0.0, np.pi]))
-        x = (self.centre + ahead, self.centre - behind)
-        return (*x, -x[0], -x[1]) if self.centre else x
+        x = self.contour_points[0][[0, -1]].tolist()
+        return (*x, -x[0], -x[1]) if self.centre else tuple(x)
 
     def end_angle(self, depth: float) -> float:
         """Half of the angle about the origin that the contact fills at a ``depth`` inside its end on x > 0.
 
         Pi where it reaches no farther there than to the sides.
         """
-        x, y = self._contour
+        x, y = self.contour_points
         ended = np.flatnonzero(np.hypot(x, y) < x[0] - depth)
         return float(np.arctan2(y, x)[ended[0]]) if ended.size else np.pi
 
     @property
     def peak(self) -> float:
-        """Largest pressure, between the points of a grid by a parabola in each direction."""
-        s, tau = np.linspace(0, 0.99, 100), np.pi * np.arange(61) / 60
-        R = self.edge_at(tau)
-        x, y = self.centre + np.outer(s, R * np.cos(tau)), np.outer(s, R * np.sin(tau))
-        p = self(x, y)
-        i, j = np.unravel_index(int(p.argmax()), p.shape)
-        # refined around the highest point, whose place matters to second order alone
-        size = 0.02 * float(R[j])
-        for _ in range(4):
-            offset = size * np.linspace(-1, 1, 9)
-            X, Y = x[i, j] + offset[:, None], y[i, j] + offset[None, :]
-            x, y = np.broadcast_arrays(X, Y)
+        """Largest pressure, on grids that close in on it: its place matters to second order alone."""
+        tau, w = np.meshgrid(np.pi * np.arange(61) / 60, np.linspace(0, 0.99, 100))
+        x, y = self.points(w, tau)
+        size, offset = 0.02 * min(self.axes), np.linspace(-1, 1, 9)
+        for _ in range(5):
             p = self(x, y)
-            i, j = np.unravel_index(int(p.argmax()), p.shape)
+            at = np.unravel_index(int(p.argmax()), p.shape)
+            x, y = np.broadcast_arrays(x[at] + size * offset[:, None], y[at] + size * offset)
             size /= 4
-        return float(p[i, j])
+        return float(p.max())
 
     @property
     def extents(self) -> tuple[float, float]:
         """Largest x and y of the contact."""
-        x, y = self._contour
+        x, y = self.contour_points
         return float(x.max()), float(y.max())
 
 
 @dataclass(frozen=True, eq=False)
 class Quadrature:
-    """Points on arcs of radius r (arcs,) at angles theta (arcs, points); s, tau, x, y and ``weights`` of them
-    all, of integrals over the whole contact."""
+    """Points on arcs of radius r (arcs,) at angles theta (arcs, points); w, s, tau, x, y and ``weights`` of
+    them all, of integrals over the whole contact."""
 
     r: np.ndarray
     theta: np.ndarray
+    w: np.ndarray
     s: np.ndarray
     tau: np.ndarray
     x: np.ndarray
     y: np.ndarray
     weights: np.ndarray
-
-
-@dataclass(frozen=True, eq=False)
-class Corrected:
-    """A pressure under which the gap vanishes, with its approach, and the compliance it was found with."""
-
-    compliance: HarmonicCompliance
-    pressure: StarPressure
-    approach: float
-    steps: int
-    converged: bool
-
-    @cached_property
-    def nodal_loads(self) -> np.ndarray:
-        """Products of the pressure with the shape functions, (harmonics, nodes)."""
-        at, forces = self._forces
-        each = forces.reshape(1, *at.theta.shape)
-        return self.compliance.nodal_loads(at.r, at.theta, each, self.compliance.last)[..., 0]
-
-    def residual(self, height: Pressure) -> float:
-        """Root mean square of the gap left inside, weighted with the pressure, over the approach."""
-        at, forces = self._forces
-        deflection = self.compliance.deflection(self.nodal_loads, at.r, at.theta).ravel()
-        gap = deflection + height(at.x, at.y) - self.approach
-        return float(np.sqrt((forces * gap**2).sum() / forces.sum()) / self.approach)
-
-    @cached_property
-    def _forces(self) -> tuple[Quadrature, np.ndarray]:
-        at = self.pressure.quadrature(self.compliance, self.compliance.last)
-        return at, at.weights * self.pressure(at.x, at.y)
-
-
-def corrected(
-    compliance: HarmonicCompliance, given: StarPressure, height: Pressure, load: float, last: int
-) -> Corrected:
-    """Pressure under which the gap below an indenter of ``height`` (x, y) vanishes; scaled units.
-
-    last : harmonic at which the compliance is cut off, since the corrections are smooth
-    """
-    matrices = compliance.matrices[: last // compliance.fold + 1]
-    pressure = given
-    for step in range(STEPS + 1):
-        at = pressure.quadrature(compliance, last)
-        p = pressure(at.x, at.y)
-        root = np.sqrt(1 - at.s**2)
-        smooth = root * pressure.polynomials(at.s, at.tau, DEGREE)
-        singular = float((at.weights * p).sum() / (at.weights * root).sum()) / root
-        moved = np.array([singular * at.s ** (4 if n else 2) * np.cos(n * at.tau) for n in pressure.waves])
-        tests = root**3 * pressure.polynomials(at.s, at.tau, DEGREE + 2)
-        forces = np.concatenate([[p], smooth, moved, tests]) * at.weights
-        k = 1 + len(smooth) + len(moved)
-        L = compliance.nodal_loads(at.r, at.theta, forces.reshape(-1, *at.theta.shape), last)
-        known = height(at.x, at.y)
-        total = forces.sum(axis=1)
-        work = np.einsum("mit,mic->tc", L[:, :, k:], matrices @ L[:, :, :k])
-        A = np.zeros((len(tests) + 1, k))
-        A[:-1, :-1], A[:-1, -1], A[-1, :-1] = work[:, 1:], -total[k:], total[1:k]
-        b = np.append(-work[:, 0] - forces[k:] @ known, load - total[0])
-        rows = np.abs(A).max(axis=1)
-        columns = np.abs(A / rows[:, None]).max(axis=0)
-        x = np.linalg.lstsq(A / rows[:, None] / columns, b / rows, rcond=1e-12)[0] / columns
-        n = len(smooth)
-        size = float(np.abs(x[n:-1]).max())
-        if size < ENOUGH or step == STEPS:
-            break
-        share = min(1.0, LARGEST / size)
-        pressure = replace(
-            pressure, coefficients=pressure.coefficients + share * x[:n], edge=pressure.edge + share * x[n:-1]
-        )
-    return Corrected(compliance, pressure, float(x[-1]), step, size < CLOSE)

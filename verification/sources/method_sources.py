@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import lru_cache, partial
+from functools import partial
 from typing import Any
 
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad, keywords
@@ -17,8 +17,6 @@ def solve_semianalytic(problem: Problem, numerics: Mapping[str, Any] | None = No
     """``problem`` by the semi-analytical method."""
     import semianalytic
 
-    if isinstance(problem, CoatedContact) and problem.indenter is not None and not numerics:
-        return _shape_by_patches(problem)
     if isinstance(problem, LoadingCurve):
         from verification.sources.loading_solution import loading
 
@@ -28,20 +26,12 @@ def solve_semianalytic(problem: Problem, numerics: Mapping[str, Any] | None = No
     return solve(**keywords(problem) | given, **(numerics or {}))
 
 
-@lru_cache(maxsize=1)
-def _shape_by_patches(problem: CoatedContact) -> Any:
-    """An indenter that is no sphere, solved once: elements begin with the pressure of patches."""
-    import semianalytic
-
-    return semianalytic.solve(**keywords(problem))
-
-
 def solve_elements(problem: Problem, numerics: Mapping[str, Any] | None = None) -> Any:
     """``problem`` by finite elements, extrapolated where a layer is incompressible."""
     from verification.sources.limit_extrapolation import extrapolated, short_of_limit
 
     if isinstance(problem, CoatedContact) and problem.indenter is not None:
-        return _shape_by_elements(problem, numerics or {})
+        return _elements(numerics or {}, problem)
     if isinstance(problem, LoadingCurve):
         from verification.sources.loading_solution import loading
 
@@ -52,24 +42,14 @@ def solve_elements(problem: Problem, numerics: Mapping[str, Any] | None = None) 
     return extrapolated(problem, partial(_elements, given))
 
 
-def _shape_by_elements(problem: CoatedContact, numerics: Mapping[str, Any]) -> Any:
-    """An indenter that is no sphere: elements correct a pressure of patches until their gap vanishes."""
-    import fem_reference
-
-    if problem.ball is not None:
-        raise ValueError(
-            "the elements solve contacts that are not round with a rigid indenter alone; leave out its "
-            "elastic solid, or use the semi-analytical method alone"
-        )
-    start = _shape_by_patches(problem)
-    given = {name: value for name, value in keywords(problem).items() if name != "ball"}
-    return fem_reference.solve_shape(start=start.pressure, **given, **numerics)
-
-
 def _elements(numerics: Mapping[str, Any], problem: CoatedContact | PrescribedLoad) -> Any:
     import fem_reference
 
-    solve = fem_reference.solve_prescribed if isinstance(problem, PrescribedLoad) else fem_reference.solve
+    solve: Any = fem_reference.solve
+    if isinstance(problem, PrescribedLoad):
+        solve = fem_reference.solve_prescribed
+    elif problem.indenter is not None:
+        solve = fem_reference.solve_shape
     return solve(**keywords(problem), **numerics)
 
 

@@ -16,7 +16,6 @@ class Independence(StrEnum):
 
     NOTHING = "without a common equation"
     EQUATION = "with a common equation, coded twice"
-    START = "one method starting from the other"
     CLOSED = "with closed forms"
     PRINT = "with published tables"
 

@@ -39,20 +39,14 @@ def sources_of(problem: Problem, kind: str = "stress") -> tuple[str, ...]:
     return tuple(source.name for source in SOURCES.values() if source.supports(problem, kind))
 
 
-def independence(between: tuple[str, ...], *, shaped: bool = False) -> Independence:
-    """Common ground of two sources that are compared.
-
-    shaped : the indenter is no sphere; the finite elements then correct the pressure of the patches, see
-    ``method_sources.solve_elements``, and what they do not reach of it is common to both.
-    """
+def independence(between: tuple[str, ...]) -> Independence:
+    """Common ground of two sources that are compared."""
     pair = [SOURCES[name] for name in between if name in SOURCES]
     kinds = {source.kind for source in pair}
     if Kind.PUBLISHED in kinds:
         return Independence.PRINT
     if Kind.CLOSED in kinds:
         return Independence.CLOSED
-    if shaped and set(between) == set(METHODS):
-        return Independence.START
     shared = len({source.equation for source in pair}) < len(pair) and pair[0].equation
     return Independence.EQUATION if shared else Independence.NOTHING
 

@@ -191,10 +191,6 @@ def test_what_both_methods_share_is_read_from_their_source(evidence, tmp_path, m
     )
     assert said["special functions"] == "none"
     assert said["quadrature nodes"] == "numpy.polynomial.legendre.leggauss"
-    sphere = replace(RESULTS[0], problem={**RESULTS[0].problem, "indenter": None})
-    assert dict(first_page.shared(ReportMaterial([sphere], INFO, evidence)))["start values"] == "none"
-    ellipse = replace(RESULTS[0], problem={**RESULTS[0].problem, "indenter": ("ellipsoid", (1.0, 2.0))})
-    assert "patches" in dict(first_page.shared(ReportMaterial([ellipse], INFO, evidence)))["start values"]
     both = (replace(first, functions=("scipy.special.j0",)), replace(second, functions=("scipy.special.j0",)))
     parts = (*both, replace(first, forbidden=("a imports b",)))
     wrong = replace(evidence, code=replace(evidence.code, parts=parts))
@@ -214,7 +210,5 @@ def test_the_largest_cost_of_an_assumption_names_its_case(evidence):
 def test_kinds_of_independence():
     assert independence(("semianalytic", "integral_equation")) is Independence.EQUATION
     assert independence(("semianalytic", "fem_reference")) is Independence.NOTHING
-    assert independence(("semianalytic", "fem_reference"), shaped=True) is Independence.START
     assert independence(("fem_reference", "hertz")) is Independence.CLOSED
-    assert independence(("fem_reference", "hertz"), shaped=True) is Independence.CLOSED
     assert independence(("fem_reference", "published")) is Independence.PRINT

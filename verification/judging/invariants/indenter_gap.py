@@ -3,6 +3,7 @@
 import numpy as np
 
 from verification.judging.invariant_verdict import Invariant, decide
+from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, Solution
 from verification.problem.gauss_legendre import gauss_legendre
 from verification.problem.indenter_shape import height_of
@@ -30,17 +31,20 @@ def gap(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
     inside, outside = np.all(loaded, axis=1), np.all(~loaded, axis=1)
     clear = np.flatnonzero(inside | outside)
     x, y, inside = x[clear], y[clear], np.asarray(inside)[clear]
-    u, U = solution.sample(Points(x, y), "displacement")
-    lifted = u[2]
-    if problem.friction:
-        lifted = (u[2] + solution.displacement(-x, y, 0.0)[2]) / 2
+    lifted: Array | float = 0.0
+    bound: Array | float | None = solution.sample(None, "approach").uncertainty
+    for body in problem.bodies:
+        u, U = solution.sample(Points(x, y, body=body), "displacement")
+        if problem.friction:
+            opposite = solution.sample(Points(-x, y, body=body), "displacement", False).value
+            u = (u + opposite) / 2
+        lifted = lifted + u[2]
+        bound = None if bound is None or U is None else bound + U[2]
     left = (
         lifted + height_of(problem.indenter, problem.radius)(x, y) - solution.approach
     ) / solution.approach
     residual = np.where(inside, left, np.minimum(left, 0.0))
-    bound = None
-    if U is not None:
-        bound = (U[2] + solution.sample(None, "approach").uncertainty) / solution.approach
+    bound = None if bound is None else bound / solution.approach
     law = "u_z + height = approach in the contact, no less outside, over the approach"
     return decide("indenter", source, law, residual, bound)
 

@@ -64,6 +64,15 @@ def _of_shape(solution: Solution, source: str, problem: CoatedContact) -> Iterat
     yield "indenter", partial(indenter_gap.gap, *subject)
     if source == "semianalytic":
         yield "influence coefficients", partial(influence_error.influence_coefficients, *subject)
+    yield from _of_shaped_body(*subject)
+    if problem.ball is not None:
+        of_ball = on_body(solution, BALL), source, problem.seen_from(BALL)
+        yield from ((f"{ON_BALL}{name}", law) for name, law in _of_shaped_body(*of_ball))
+
+
+def _of_shaped_body(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
+    """Invariants of the fields of one body below an indenter that is no sphere."""
+    subject = (solution, source, problem)
     for k in range(1, len(problem.coatings) + 1):
         yield f"bonded tractions, interface {k}", partial(bonded_deformation.bonded_traction, *subject, k)
     for layer in range(len(problem.coatings) + 1):

@@ -246,10 +246,9 @@ def agreements(material: ReportMaterial) -> list[Worth]:
     again = repeated(material)
     found: dict[Independence, list[Verdict]] = {}
     for result in material.results:
-        shaped = result.problem.get("indenter") is not None
         for number, (claim, verdict) in enumerate(result.verdicts):
             if (result.name, number) not in again:
-                found.setdefault(independence(claim.between, shaped=shaped), []).append(verdict)
+                found.setdefault(independence(claim.between), []).append(verdict)
     rows = []
     for kind in (kind for kind in Independence if kind in found):
         held = [one.outcome is Outcome.AGREES for one in found[kind]]
@@ -277,7 +276,6 @@ def shared(material: ReportMaterial) -> list[tuple[str, str]]:
     equations = {SOURCES[name].equation for name in METHODS}
     one_equation = len(equations) == 1 and equations != {""}
     with_method = [one.label for one in SOURCES.values() if one.equation and one.name not in METHODS]
-    starts = any(result.problem.get("indenter") for result in material.contacts)
     return [
         ("code", "; ".join(forbidden[:3]) or f"none, by {counted} imports; both use {packages}"),
         (
@@ -288,10 +286,6 @@ def shared(material: ReportMaterial) -> list[tuple[str, str]]:
         ),
         ("special functions", ", ".join(special) or "none"),
         ("quadrature nodes", ", ".join(nodes) or "none"),
-        (
-            "start values",
-            "where not round, the elements start from the patches' pressure" if starts else "none",
-        ),
     ]
 
 

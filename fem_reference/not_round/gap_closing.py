@@ -1,0 +1,192 @@
+"""Contour and pressure under which the gap that finite elements find inside a contact vanishes.
+
+By hand: no package solves a contact by the compliance of one meridian plane.
+
+Unknown are the contour and the coefficients of the pressure, see ``star_contact``, and the approach delta.
+The part of the gap  u_z + height - delta  inside that functions
+
+    s^n T_j(2 s^2 - 1) cos(n tau),   n + 2 j <= degree + 4,
+
+hold is made least in the norm of the weight (1 - s^2)^2.5, which leaves out the edge, where elements are too
+stiff; the pressure is to carry the load. The root of a pressure misses the displacement by about h^1.5 on a
+width h beside the edge, so that its product with such a condition errs by h^((WEIGHT + 5)/2). Gauss and
+Newton's method: the pressure is linear in its coefficients, and moving the edge by c_n cos(n tau) changes it
+by  -dp/ds s^(n + 1) cos(n tau) c_n.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fem_reference.contact.levels import NotConverged
+from fem_reference.not_round.harmonic_compliance import HarmonicCompliance
+from fem_reference.not_round.indenter_height import Height
+from fem_reference.not_round.star_contact import Quadrature, StarPressure
+
+STEPS, ENOUGH, CLOSE = 24, 1e-7, 1e-4  # change of the edge in the last step, and in one that failed
+# Power of the root in the conditions: elements miss int p u dA by h^((WEIGHT + 5)/2) along an edge
+WEIGHT = 5
+MORE, FIRM = 4, 1e3  # degree of the conditions beyond that of the pressure; weight of the load
+# Of the peak, a negative pressure, and of the approach, a penetration: what elements may err by
+ALLOWED = 3e-3
+ADVICE = "; the contact may have a hole or more parts, change the shape or the load"
+LARGEST = 0.2  # change of the edge in one step
+
+
+@dataclass(frozen=True, eq=False)
+class Closed:
+    """A pressure under which the gap vanishes, its approach, and the compliances of the bodies below it.
+
+    covariance : of coefficients, change of the edge and approach, by what the conditions leave of the gap
+    """
+
+    compliances: tuple[HarmonicCompliance, ...]
+    pressure: StarPressure
+    approach: float
+    steps: int
+    converged: bool
+    covariance: np.ndarray
+
+    @cached_property
+    def nodal_loads(self) -> np.ndarray:
+        """Products of the pressure with the shape functions, (harmonics, nodes)."""
+        at, forces = self._forces
+        one = self.compliances[0]
+        return one.nodal_loads(at.r, at.theta, forces.reshape(1, *at.theta.shape), one.last)[..., 0]
+
+    def of_degree(self, degree: int, height: Height, load: float, last: int) -> "Closed":
+        """The contact by a pressure of another degree; arguments as of ``closed``."""
+        return closed(self.compliances, self.pressure.of_degree(degree), height, load, last)
+
+    def residual(self, height: Height) -> float:
+        """Root mean square of the gap left inside, weighted with the pressure, over the approach."""
+        at, forces = self._forces
+        gap = self._gap(height, at.r, at.theta).ravel()
+        return float(np.sqrt((np.abs(forces) * gap**2).sum() / np.abs(forces).sum()) / self.approach)
+
+    @property
+    def errors(self) -> np.ndarray:
+        """Relative standard errors of contact radius, approach, pressure at the centre and extents."""
+        p = self.pressure
+        zero = np.zeros(1)
+        n, k = len(p.coefficients), len(p.coefficients) + len(p.waves)
+        rows = np.zeros((5, k + 1))
+        rows[0, n], rows[1, k] = 1.0, 1 / self.approach
+        centre = p.polynomials(zero, zero, p.degree)[:, 0]
+        rows[2, :n] = centre / (centre @ p.coefficients)
+        rows[3, n:k], rows[4, n:k] = 1.0, np.cos(np.pi / 2 * np.array(p.waves))
+        return np.asarray(np.sqrt(np.maximum(np.einsum("ri,ij,rj->r", rows, self.covariance, rows), 0.0)))
+
+    def check_rest(self, name: str) -> None:
+        """Raises NotConverged unless the contour came to rest."""
+        if not self.converged:
+            raise NotConverged(
+                f"the contour under the {name} is not at rest after {self.steps} steps{ADVICE}"
+            )
+
+    def check(self, height: Height, name: str) -> None:
+        """Raises NotConverged unless the contour came to rest, with p >= 0 inside and a gap >= 0 outside."""
+        self.check_rest(name)
+        p = self.pressure
+        w, tau = np.meshgrid(np.linspace(0.05, 0.99, 20), np.linspace(0, np.pi, 37))
+        x, y = p.points(w, tau)
+        inside = p(x, y)
+        if inside.min() < -ALLOWED * inside.max():
+            at = np.unravel_index(int(inside.argmin()), inside.shape)
+            raise NotConverged(
+                f"the pressure under the {name} is negative, {inside[at] / inside.max():.2g} of its largest, "
+                f"at x = {x[at]:.3g}, y = {y[at]:.3g} of the contact's extent{ADVICE}"
+            )
+        nodes = self.compliances[0].vertices
+        x, y = (v.ravel() for v in p.points(*np.meshgrid([1.02, 1.1, 1.3, 1.7], np.linspace(0, np.pi, 37))))
+        r, theta = np.hypot(x, y), np.arctan2(y, x)
+        near = (r > nodes[0]) & (r < nodes[-1]) & (x * (p.centre > 0) >= 0)
+        gap = self._gap(height, r[near], theta[near, None])
+        if gap.size and gap.min() < -ALLOWED * self.approach:
+            raise NotConverged(
+                f"the {name} penetrates by {-gap.min() / self.approach:.2g} of the approach outside the "
+                f"contact{ADVICE}"
+            )
+
+    def _gap(self, height: Height, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Gap on arcs of radius r (arcs,) at theta (arcs, points)."""
+        u = self.compliances[0].deflection(self._deflections, r, theta)
+        return np.asarray(u + height(r[:, None] * np.cos(theta), r[:, None] * np.sin(theta)) - self.approach)
+
+    @cached_property
+    def _deflections(self) -> np.ndarray:
+        """Amplitudes of u_z of all bodies, (nodes, harmonics)."""
+        return sum((one.matrices @ self.nodal_loads[..., None])[..., 0].T for one in self.compliances)
+
+    @cached_property
+    def _forces(self) -> tuple[Quadrature, np.ndarray]:
+        one = self.compliances[0]
+        at = self.pressure.quadrature(one.vertices, one.last)
+        return at, at.weights * self.pressure(at.x, at.y)
+
+
+def closed(
+    compliances: tuple[HarmonicCompliance, ...],
+    pressure: StarPressure,
+    height: Height,
+    load: float,
+    last: int,
+    enough: float = ENOUGH,
+) -> Closed:
+    """Contour and pressure whose gap below an indenter of ``height`` (x, y) vanishes; scaled units.
+
+    last : harmonic at which the compliance is cut off, since the conditions are smooth
+    """
+    one = compliances[0]
+    matrices = sum(body.matrices[: last // body.fold + 1] for body in compliances)
+    delta, size = 0.0, np.inf
+    for step in range(1, STEPS + 1):
+        steps = step
+        at = pressure.quadrature(one.vertices, last)
+        root, s = np.sqrt(1 - at.s**2), at.s
+        trial = root * pressure.polynomials(s, at.tau, pressure.degree)
+        slope = _slope(pressure, at)
+        moved = np.array([-slope * at.s ** _power(n) * np.cos(n * at.tau) for n in pressure.waves])
+        tests = root**WEIGHT * pressure.polynomials(s, at.tau, pressure.degree + MORE)
+        # orthonormal for the weight root^5, so that the squares of their products are those of the gap
+        tests = np.linalg.solve(np.linalg.cholesky((tests * at.weights / root**WEIGHT) @ tests.T), tests)
+        forces = np.concatenate([trial, moved, tests]) * at.weights
+        n, k = len(trial), len(trial) + len(moved)
+        L = one.nodal_loads(at.r, at.theta, forces.reshape(-1, *at.theta.shape), last)
+        total = forces.sum(axis=1)
+        work = np.einsum("mit,mic->tc", L[:, :, k:], matrices @ L[:, :, :k])
+        A = np.zeros((len(tests) + 1, k + 1))
+        A[:-1, :k], A[:-1, k], A[-1, :k] = work, -total[k:], total[:k]
+        b = np.append(-forces[k:] @ height(at.x, at.y), load)
+        # the load counts so much that it is kept
+        heavy = FIRM * np.abs(A[:-1, k]).max() / np.abs(A[-1]).max()
+        A[-1], b[-1] = heavy * A[-1], heavy * b[-1]
+        columns = np.abs(A).max(axis=0)
+        x = np.linalg.lstsq(A / columns, b, rcond=1e-12)[0] / columns
+        covariance = np.linalg.pinv(A.T @ A) * float(np.sum((A @ x - b) ** 2)) / (len(A) - len(x))
+        size, delta = float(np.abs(x[n:k]).max()), float(x[k])
+        share = min(1.0, LARGEST / size)
+        old = pressure.coefficients
+        pressure = pressure.moved(share * x[n:k], old + share * (x[:n] - old))
+        if size < enough:
+            break
+        if pressure.reach[1] > one.vertices[-1] or pressure.reach[0] < one.vertices[0]:
+            break  # it leaves the mesh
+    return Closed(compliances, pressure, delta, steps, size < CLOSE, covariance)
+
+
+def _power(n: int) -> int:
+    """Power of s in ds/dc_n: of a shift of the centre (1), of the half axes (0, 2), of the contour."""
+    return n + 1 if n > 2 else (n + 1) % 2
+
+
+def _slope(pressure: StarPressure, at: Quadrature) -> np.ndarray:
+    """dp/ds at the points, the polynomial's by differences."""
+    h = 1e-5
+    root = np.sqrt(1 - at.s**2)
+    below, Q, above = (
+        np.tensordot(pressure.coefficients, pressure.polynomials(at.s + e, at.tau, pressure.degree), 1)
+        for e in (-h, 0.0, h)
+    )
+    return np.asarray(-at.s / root * Q + root * (above - below) / (2 * h))
