@@ -7,16 +7,16 @@
 True
 """
 
-from fem_reference.contact.levels import NotConverged
+from fem_reference.contact.levels import ElementsNotConverged
 from fem_reference.contact_solver import solve, solve_prescribed
 from fem_reference.not_round.shaped_contact import ShapedContact, solve_shape
-from fem_reference.solved_contact import Solution
+from fem_reference.solved_contact import ElementSolution
 from fem_reference.vtu import write_vtu
 
 __all__ = [
-    "NotConverged",
+    "ElementSolution",
+    "ElementsNotConverged",
     "ShapedContact",
-    "Solution",
     "solve",
     "solve_prescribed",
     "solve_shape",

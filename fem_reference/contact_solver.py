@@ -13,15 +13,15 @@ import numpy as np
 
 from fem_reference import element_numbers as chosen
 from fem_reference.contact.fixed_radius import complementarity
-from fem_reference.contact.levels import NotConverged, family, meshes_at, solve_levels
+from fem_reference.contact.levels import ElementsNotConverged, family, meshes_at, solve_levels
 from fem_reference.elasticity.axisymmetric import Discretisation
 from fem_reference.elasticity.loading import solve_traction
 from fem_reference.elasticity.recovery import HarmonicField
 from fem_reference.elasticity.state import ElasticState
 from fem_reference.estimate import Estimates, contact_estimates, estimates, of_scalar
 from fem_reference.meshing.mesh import Grading
-from fem_reference.scaling import Coatings, LayeredSolid, Units
-from fem_reference.solved_contact import Diagnostics, Solution
+from fem_reference.scaling import Coatings, LayeredSolid, Scales
+from fem_reference.solved_contact import ElementDiagnostics, ElementSolution
 from fem_reference.validation import (
     check_ball,
     check_choice,
@@ -49,7 +49,7 @@ def solve(
     far: float = 1000.0,
     estimate_uncertainty: bool = True,
     gap: str = "parabola",
-) -> Solution:
+) -> ElementSolution:
     """Sphere pressed on, and with friction slid over, a coated half-space.
 
     radius [m], load [N], coatings ((E, nu, thickness), ...) [Pa, -, m] from the surface down, () for none,
@@ -64,7 +64,7 @@ def solve(
     gap     : "parabola" r^2/2R or "sphere" R - sqrt(R^2 - r^2)
     The approach is that of distant points of both bodies.
     Poisson ratios up to 0.49 do not lock at order 4; above, digits are lost as 1/(1 - 2 nu), and 0.5 is
-    refused. Raises ValueError for bad input, NotConverged when no contact radius has the load.
+    refused. Raises ValueError for bad input, ElementsNotConverged when no contact radius has the load.
     """
     started = time.perf_counter()
     check_positive(radius=radius, load=load, far=far)
@@ -78,7 +78,7 @@ def solve(
         compliance += (1 - ball[1] ** 2) / ball[0]
     size = _size(quality, size, [(*coatings, substrate), (*ball[2], ball[:2]) if ball else ()])
     a_h = (3 * load * radius * compliance / 4) ** (1 / 3)
-    unit = Units(length=a_h, pressure=E * a_h / radius, modulus=E)
+    unit = Scales(length=a_h, pressure=E * a_h / radius, modulus=E)
     solids: tuple[LayeredSolid, ...] = (LayeredSolid.scaled(coatings, substrate, a_h, far, E),)
     check_proportions(solids[0].thicknesses, "a_h")
     if ball is not None:
@@ -99,24 +99,26 @@ def solve(
     check_radius(final.contact_radius * a_h, radius)
     penetration, tension = complementarity(final)
     if not all(0 <= part <= chosen.NO_DISC for part in (penetration, tension)):  # also true of NaN, -inf
-        raise NotConverged(
+        raise ElementsNotConverged(
             f"the contact is not one disc: penetration outside is {penetration:.2g} of the approach, tension "
             f"inside {tension:.2g} of the peak pressure; use quality='fine', or check the Poisson ratios"
         )
     if not np.isfinite(final.stiffness):
-        raise NotConverged(f"the contact's stiffness dW/d delta is {final.stiffness}; use quality='fine'")
+        raise ElementsNotConverged(
+            f"the contact's stiffness dW/d delta is {final.stiffness}; use quality='fine'"
+        )
     pairs = zip(solids, (None, final.ball), strict=False)
     states = tuple(ElasticState.of_contact(solid, final, body) for solid, body in pairs)
     found: tuple[Estimates, ...] = ()
     stiffness_error = None
     if estimate_uncertainty:
         found, stiffness_error = contact_estimates(contacts, states, unit)
-    frictionless = Solution(
+    frictionless = ElementSolution(
         contact_radius=final.contact_radius * unit.length,
         approach=final.approach * unit.displacement,
         peak_pressure=states[0].peak[1] * unit.pressure,
         surface_nodes=_surface_nodes(d) * unit.length,
-        diagnostics=Diagnostics(
+        diagnostics=ElementDiagnostics(
             iterations=len(history),
             dofs=sum(2 * state.discretisation.N for state in states),
             triangles=sum(int(state.mesh.layer.size) for state in states),
@@ -148,7 +150,7 @@ def solve_prescribed(
     size: float | None = None,
     far: float = 1000.0,
     estimate_uncertainty: bool = True,
-) -> Solution:
+) -> ElementSolution:
     """A coated half-space under a given pressure on the disc r <= ``load_radius``, with q = f p.
 
     pressure : a number (uniform) or a callable p(r) [Pa] of an array of radii [m]
@@ -161,7 +163,7 @@ def solve_prescribed(
     check_choice("order", order, (2, 3, 4))
     size = _size(quality, size, [(*coatings, substrate)])
     p = prescribed_pressure(pressure, load_radius)
-    unit = Units(length=load_radius, pressure=p.scale, modulus=substrate[0])
+    unit = Scales(length=load_radius, pressure=p.scale, modulus=substrate[0])
     solid = LayeredSolid.scaled(coatings, substrate, load_radius, far, substrate[0])
     check_proportions(solid.thicknesses, "load_radius")
 
@@ -177,12 +179,12 @@ def solve_prescribed(
         found = estimates((state,), (tuple(coarser),), unit, approach)
     d = state.discretisation
     nodes = _surface_nodes(d)
-    frictionless = Solution(
+    frictionless = ElementSolution(
         contact_radius=load_radius,
         approach=state.central_displacement * unit.displacement,
         peak_pressure=float(np.max(p(np.abs(nodes)))) * unit.pressure,
         surface_nodes=nodes * unit.length,
-        diagnostics=Diagnostics(
+        diagnostics=ElementDiagnostics(
             dofs=2 * d.N,
             triangles=int(d.mesh.layer.size),
             order=order,

@@ -34,7 +34,7 @@ class ElementAnswer(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Uncertainty:
+class ElementUncertainty:
     """Absolute numerical uncertainty in SI units; ``budget`` has rows (quantity, origin, value)."""
 
     contact_radius: float

@@ -60,9 +60,9 @@ FIRST_SIZE, FIRST_ROWS = 0.5, 1.0
 # Tolerances of the load. Those of coarser meshes count in the estimate. The final mesh meets its own by one
 # solve, then moves with its edge to the load itself.
 FIRST_LOAD, COARSE_LOAD, FINAL_LOAD = 1e-3, 1e-5, 3e-8
-MOST_SOLVES = 30  # of the contact on one mesh, then NotConverged
+MOST_SOLVES = 30  # of the contact on one mesh, then ElementsNotConverged
 STRETCH = 1.3  # largest factor by which radii are stretched before a new mesh is generated
-NO_DISC = 1e-3  # penetration over the approach, or tension over the peak, from which NotConverged is raised
+NO_DISC = 1e-3  # penetration over the approach, or tension over the peak, from which a contact is no disc
 
 # --- beside the contact edge: errors of stresses there
 # Distances from the edge over EDGE_SIZE times the radius: the series replaces the strains below the first and

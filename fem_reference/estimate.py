@@ -30,9 +30,9 @@ from fem_reference.comparison_points import ComparisonPoints, largest_around, li
 from fem_reference.contact.fixed_radius import FixedRadiusContact
 from fem_reference.elasticity.recovery import TRACTIONS, HarmonicField
 from fem_reference.elasticity.state import ElasticState
-from fem_reference.element_answer import Uncertainty
+from fem_reference.element_answer import ElementUncertainty
 from fem_reference.meshing.location import LocatedPoints, Uncached
-from fem_reference.scaling import Units
+from fem_reference.scaling import Scales
 
 
 def from_changes(changes: np.ndarray, p: int) -> np.ndarray:
@@ -152,7 +152,7 @@ class StressEstimate(Uncached):
 class Estimates:
     """Uncertainty of one body, ``scalars`` in SI units; its states on the two ``coarser`` meshes."""
 
-    scalars: Uncertainty
+    scalars: ElementUncertainty
     pressure: PressureEstimate
     normal: StressEstimate
     tangential: StressEstimate | None
@@ -170,7 +170,7 @@ class Estimates:
 
 
 def contact_estimates(
-    contacts: tuple[FixedRadiusContact, ...], states: tuple[ElasticState, ...], units: Units
+    contacts: tuple[FixedRadiusContact, ...], states: tuple[ElasticState, ...], units: Scales
 ) -> tuple[tuple[Estimates, ...], float]:
     """Uncertainty of each frictionless state of a contact on the finest mesh, and of its stiffness.
 
@@ -199,7 +199,7 @@ def contact_estimates(
 def estimates(
     states: tuple[ElasticState, ...],
     coarser: tuple[tuple[ElasticState, ...], ...],
-    units: Units,
+    units: Scales,
     approach: float,
     radius: float = 0.0,
     edge: float = 0.0,
@@ -235,7 +235,7 @@ def estimates(
         if k < len(errors)
     )
     total = {name: sum(value for quantity, _, value in budget if quantity == name) for name in scale}
-    scalars = Uncertainty(**total, budget=budget)
+    scalars = ElementUncertainty(**total, budget=budget)
     found = []
     for state, others in zip(states, coarser, strict=True):
         normal = StressEstimate(

@@ -12,7 +12,7 @@ Coatings = tuple[tuple[float, float, float], ...]
 
 
 @dataclass(frozen=True)
-class Units:
+class Scales:
     """SI values of the units in which a problem is solved."""
 
     length: float

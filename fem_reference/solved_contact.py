@@ -8,15 +8,15 @@ import numpy as np
 
 from fem_reference import element_numbers as chosen
 from fem_reference.elasticity.state import ElasticState
-from fem_reference.element_answer import ElementAnswer, PlainFields, Uncertainty
+from fem_reference.element_answer import ElementAnswer, ElementUncertainty, PlainFields
 from fem_reference.estimate import Estimates
 from fem_reference.meshing.location import SolidPoints, solid_points
-from fem_reference.scaling import Units
+from fem_reference.scaling import Scales
 from fem_reference.validation import check_friction
 
 
 @dataclass(frozen=True, kw_only=True)
-class Diagnostics:
+class ElementDiagnostics:
     """How the solution was reached.
 
     iterations : contact solves on all levels
@@ -40,7 +40,7 @@ class Diagnostics:
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(PlainFields):
+class ElementSolution(PlainFields):
     """Contact of a sphere (or a prescribed pressure) on a coated half-space.
 
     Origin at first contact, x along sliding, z into the body in question; tension positive; SI units.
@@ -61,17 +61,17 @@ class Solution(PlainFields):
     approach: float
     peak_pressure: float
     surface_nodes: np.ndarray
-    diagnostics: Diagnostics
+    diagnostics: ElementDiagnostics
     states: tuple[ElasticState, ...] = field(repr=False)
     estimates: tuple[Estimates, ...] = field(repr=False)
-    units: Units = field(repr=False)
+    units: Scales = field(repr=False)
     stiffness: float | None = None
     stiffness_uncertainty: float | None = None
     singular_radii: tuple[float, ...] = ()
     frames: ClassVar = ("fixed",)  # in which uncertainties are estimated
 
-    def with_friction(self, friction: float) -> "Solution":
-        """The same contact, sliding with another coefficient ``friction`` of q = f p, or at rest with 0.
+    def with_friction(self, friction: float) -> "ElementSolution":
+        """Contact with this pressure, sliding with another coefficient ``friction``, or at rest with 0.
 
         The pressure does not depend on friction (Goodman), so only harmonic 1 is solved, on the final mesh
         and the companion. Every value equals that of a solution of the problem with this friction.
@@ -87,8 +87,8 @@ class Solution(PlainFields):
         return replace(self, states=states, estimates=estimates, diagnostics=diagnostics)
 
     @property
-    def uncertainty(self) -> Uncertainty | None:
-        """Of the three scalars, None when not estimated."""
+    def uncertainty(self) -> ElementUncertainty | None:
+        """Uncertainty of the three scalars, None when not estimated."""
         return self.estimates[0].scalars if self.estimates else None
 
     @property
@@ -97,7 +97,7 @@ class Solution(PlainFields):
         return self.states[0]
 
     @property
-    def coarser(self) -> "Solution | None":
+    def coarser(self) -> "ElementSolution | None":
         """The companion by which the errors were estimated, without estimates; None where there is none."""
         if not self.estimates:
             return None

@@ -13,12 +13,12 @@ import numpy as np
 from skfem import MeshTri
 
 if TYPE_CHECKING:
-    from .solved_contact import Solution
+    from .solved_contact import ElementSolution
 
 STRESSES = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 
 
-def write_vtu(solution: "Solution", path: str | PathLike[str], reach: float = 20.0) -> Path:
+def write_vtu(solution: "ElementSolution", path: str | PathLike[str], reach: float = 20.0) -> Path:
     """Write the plane y = 0 within ``reach`` contact radii as quadratic triangles to ``path`` (.vtu).
 
     Points in m, cell data ``layer``, 0 at the surface; point data: displacement [m], stresses [Pa] on their

@@ -140,7 +140,7 @@ class Body:
 
     @property
     def thickness(self) -> list[float]:
-        """Of every coating [m]."""
+        """Thickness of every coating [m]."""
         return [h for _, _, h in self.coatings]
 
     def layer_of(self, z: ArrayLike, layer: int | None) -> NDArray[np.intp]:

@@ -149,7 +149,7 @@ class Solution:
         return PatchAnswer(None)
 
     def with_friction(self, friction: float) -> "Solution":
-        """The same contact and pressure, sliding with another finite coefficient; ValueError otherwise."""
+        """Solution with this pressure, sliding with another finite coefficient; ValueError otherwise."""
         check_finite(friction=friction)
         coarser = None if self.coarser is None else self.coarser.with_friction(friction)
         return replace(self, coarser=coarser, _body=self._body.with_friction(float(friction)))

@@ -123,7 +123,6 @@ def test_every_module_says_what_it_holds_in_its_first_line():
     assert [path for path, text in docs.items() if not text] == []
 
 
-@pytest.mark.xfail(reason="classes of other rooms still repeat names", strict=True)
 def test_no_two_classes_of_the_product_share_a_name():
     places = defaultdict(list)
     for path in MODULES:
@@ -133,7 +132,6 @@ def test_no_two_classes_of_the_product_share_a_name():
     assert {name: found for name, found in places.items() if len(found) > 1} == {}
 
 
-@pytest.mark.xfail(reason="some docstrings of other rooms still begin so", strict=True)
 def test_the_first_line_of_a_docstring_can_be_read_alone():
     found = []
     for path in MODULES:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from verification.cases.case_file import Case
     from verification.desk.design_answer import DesignAnswer
-    from verification.problem.coated_contact import CoatedContact, Solution
+    from verification.problem.coated_contact import CoatedContact, ContactSolution
     from verification.problem.point_answers import Points
     from verification.running.case_result import CaseResult
 
@@ -67,7 +67,7 @@ def answer(
     return design_answer(case)
 
 
-def solve(case: "Case | CoatedContact", source: str = "semianalytic", **numerics: Any) -> "Solution":
+def solve(case: "Case | CoatedContact", source: str = "semianalytic", **numerics: Any) -> "ContactSolution":
     """The solution of a case, or of a ``CoatedContact``, by one source.
 
     source : "semianalytic", "fem_reference", "integral_equation", or another of ``source_registry.SOURCES``.

@@ -16,11 +16,11 @@ from fem_reference.meshing.mesh import Grading, MeridianMesh, meridian_mesh
 from fem_reference.scaling import LayeredSolid, first_radius
 
 
-class NotConverged(Exception):
+class ElementsNotConverged(Exception):
     """The solver did not reach its tolerance; the message states what was reached and what to try."""
 
 
-class Level(NamedTuple):
+class MeshLevel(NamedTuple):
     """A mesh level and the |log W/load| allowed on it."""
 
     name: str
@@ -40,15 +40,15 @@ def solve_levels(
     Returns the contact on each, the finest first, and every solve.
 
     order, size : of the finest.  curvature : of the gap, as in `contact.undeformed_gap`
-    Raises NotConverged when the load is not reached on one of the meshes.
+    Raises ElementsNotConverged when the load is not reached on one of the meshes.
     """
     first = replace(Grading.of(chosen.FIRST_SIZE), rows=chosen.FIRST_ROWS)
     final, companion, coarsest = family(size)
     levels = [
-        Level("first", first, chosen.FIRST_LOAD),
-        Level("companion", companion, chosen.COARSE_LOAD),
-        Level("final", final, chosen.FINAL_LOAD),
-        Level("coarsest", coarsest, chosen.COARSE_LOAD),
+        MeshLevel("first", first, chosen.FIRST_LOAD),
+        MeshLevel("companion", companion, chosen.COARSE_LOAD),
+        MeshLevel("final", final, chosen.FINAL_LOAD),
+        MeshLevel("coarsest", coarsest, chosen.COARSE_LOAD),
     ]
     a = first_radius(solids, load)
     history: History = []
@@ -63,7 +63,7 @@ def solve_levels(
 
 
 def find_contact_radius(
-    solids: Solids, load: float, level: Level, a: float, order: int, curvature: float
+    solids: Solids, load: float, level: MeshLevel, a: float, order: int, curvature: float
 ) -> tuple[FixedRadiusContact, History]:
     """Find the contact radius of a ``load``, within the tolerance of the ``level``, from ``a``.
 
@@ -72,8 +72,8 @@ def find_contact_radius(
     some thousandths (``fixed_radius``), converges in a few steps. Small steps stretch the meshes, large ones
     make new ones.
 
-    Returns the last contact and every solve. Raises NotConverged after ``MOST_SOLVES``, or where the load is
-    not a positive number.
+    Returns the last contact and every solve. Raises ElementsNotConverged after ``MOST_SOLVES``, or where the
+    load is not a positive number.
     """
     meshes = meshes_at(solids, level.grading, a)
     solves: History = []
@@ -87,7 +87,7 @@ def find_contact_radius(
         if positive and abs(math.log(load / contact.load)) <= level.tolerance:
             return contact, solves
         if not positive or len(solves) >= chosen.MOST_SOLVES:
-            raise NotConverged(
+            raise ElementsNotConverged(
                 f"the contact radius did not converge on the {level.name} mesh: after {len(solves)} solves, "
                 f"at {a:.4g} a_h, the load is {contact.load / load:.6g} of the required one; check "
                 "the thicknesses and the ratio of the moduli"

@@ -146,7 +146,7 @@ class Discretisation(Uncached):
     def skeleton(
         self, materials: tuple[tuple[float, float], ...], harmonic: float, cells: np.ndarray | None = None
     ) -> "Skeleton":
-        """The same without the unknowns inside the triangles; of the triangles ``cells`` alone, or of all."""
+        """Stiffness without the unknowns inside triangles; of the triangles ``cells`` alone, or of all."""
         cells = np.arange(self.mesh.layer.size) if cells is None else cells
         fields = 3 if harmonic else 2
         inside = np.arange(self.basis.Nbfun) >= self.basis.Nbfun - self.basis.elem.interior_dofs

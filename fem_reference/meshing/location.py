@@ -57,7 +57,7 @@ class LocatedPoints:
 
     @cached_property
     def interfaces(self) -> "list[tuple[int, np.ndarray, list[LocatedPoints]]]":
-        """Of each interface with points: the layer above, the points' numbers, the points on either side."""
+        """Interfaces with points, each as the layer above, the points' numbers, the points on either side."""
         found = []
         for upper, depth in enumerate(self.locator.mesh.depths):
             numbers = np.flatnonzero(self.z == depth)

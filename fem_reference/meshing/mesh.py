@@ -81,7 +81,7 @@ class Grading:
 
 
 def surface_size(size: float, distance: np.ndarray | float) -> np.ndarray:
-    """Of triangles of a surface of that ``size`` at a ``distance`` from one of its edges."""
+    """Size of triangles of a surface of that ``size`` at a ``distance`` from one of its edges."""
     return np.clip(chosen.SURFACE_RATE * size * np.asarray(distance), chosen.SURFACE_LEAST * size, size)
 
 

@@ -19,7 +19,7 @@ from functools import cached_property
 
 import numpy as np
 
-from fem_reference.contact.levels import NotConverged
+from fem_reference.contact.levels import ElementsNotConverged
 from fem_reference.not_round.harmonic_compliance import HarmonicCompliance
 from fem_reference.not_round.indenter_height import Height
 from fem_reference.not_round.star_contact import Quadrature, StarPressure
@@ -79,14 +79,14 @@ class Closed:
         return np.asarray(np.sqrt(np.maximum(np.einsum("ri,ij,rj->r", rows, self.covariance, rows), 0.0)))
 
     def check_rest(self, name: str) -> None:
-        """Raises NotConverged unless the contour came to rest."""
+        """Raises ElementsNotConverged unless the contour came to rest."""
         if not self.converged:
-            raise NotConverged(
+            raise ElementsNotConverged(
                 f"the contour under the {name} is not at rest after {self.steps} steps{ADVICE}"
             )
 
     def check(self, height: Height, name: str) -> None:
-        """Raises NotConverged unless the contour came to rest, with p >= 0 inside and a gap >= 0 outside."""
+        """Raises ElementsNotConverged unless the contour rests, with p >= 0 inside and a gap >= 0 outside."""
         self.check_rest(name)
         p = self.pressure
         w, tau = np.meshgrid(np.linspace(0.05, 0.99, 20), np.linspace(0, np.pi, 37))
@@ -94,7 +94,7 @@ class Closed:
         inside = p(x, y)
         if inside.min() < -ALLOWED * inside.max():
             at = np.unravel_index(int(inside.argmin()), inside.shape)
-            raise NotConverged(
+            raise ElementsNotConverged(
                 f"the pressure under the {name} is negative, {inside[at] / inside.max():.2g} of its largest, "
                 f"at x = {x[at]:.3g}, y = {y[at]:.3g} of the contact's extent{ADVICE}"
             )
@@ -104,7 +104,7 @@ class Closed:
         near = (r > nodes[0]) & (r < nodes[-1]) & (x * (p.centre > 0) >= 0)
         gap = self._gap(height, r[near], theta[near, None])
         if gap.size and gap.min() < -ALLOWED * self.approach:
-            raise NotConverged(
+            raise ElementsNotConverged(
                 f"the {name} penetrates by {-gap.min() / self.approach:.2g} of the approach outside the "
                 f"contact{ADVICE}"
             )

@@ -106,7 +106,7 @@ class HarmonicCompliance:
         return _superposed(self.solved, pressed, respond)
 
     def sliding(self, loads: np.ndarray, friction: float) -> dict[int, np.ndarray]:
-        """The same under the traction ``friction`` times the pressure along x."""
+        """Fields under the traction ``friction`` times the pressure along x."""
         L = np.zeros((self.last + 3, self.nodes.size))
         L[self.harmonics] = loads
         pulled: dict[int, np.ndarray] = {}

@@ -19,7 +19,7 @@ from fem_reference.meshing.location import LocatedPoints, SolidPoints, solid_poi
 from fem_reference.meshing.mesh import Grading, MeridianMesh, meridian_mesh, surface_size
 from fem_reference.not_round.harmonic_compliance import HarmonicCompliance
 from fem_reference.not_round.star_contact import StarPressure
-from fem_reference.scaling import LayeredSolid, Units
+from fem_reference.scaling import LayeredSolid, Scales
 from fem_reference.solved_contact import cartesian, tensor
 
 AXIS = 0.3  # triangles at the axis over those elsewhere
@@ -137,7 +137,7 @@ class OffAxisFields:
         return u, s, late_u, late_s
 
     def _summed(self, points: SolidPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """The same without what the tractions themselves add on the surface, by the elements alone."""
+        """Fields by the elements alone, without what the tractions themselves add on the surface."""
         at, theta = points.located, np.arctan2(points.sin, points.cos)
         u, strain = self._strains(at, theta)
         sides = {
@@ -208,7 +208,7 @@ class PressedSolid(PlainFields):
 
     _fine: OffAxisFields
     _coarse: OffAxisFields | None
-    _units: Units
+    _units: Scales
 
     @property
     def load(self) -> float:

@@ -14,14 +14,14 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 from scipy.ndimage import maximum_filter
 
-from fem_reference.element_answer import ElementAnswer, ElementPoints, Uncertainty
+from fem_reference.element_answer import ElementAnswer, ElementPoints, ElementUncertainty
 from fem_reference.meshing.mesh import surface_size
 from fem_reference.not_round.gap_closing import ENOUGH, WEIGHT, Closed, closed
 from fem_reference.not_round.harmonic_compliance import DENSITY, harmonic_compliance
 from fem_reference.not_round.indenter_height import Height, Indenter, touching_shape
 from fem_reference.not_round.off_axis import WITHIN, OffAxisFields, PressedSolid, discretised
 from fem_reference.not_round.star_contact import StarPressure, hertz_axes
-from fem_reference.scaling import Coatings, LayeredSolid, Units
+from fem_reference.scaling import Coatings, LayeredSolid, Scales
 from fem_reference.validation import (
     check_ball,
     check_choice,
@@ -103,7 +103,7 @@ class ShapedContact(PressedSolid):
     extent_y: float
     surface_nodes: np.ndarray
     diagnostics: ShapedDiagnostics
-    uncertainty: Uncertainty | None
+    uncertainty: ElementUncertainty | None
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
     lower: StarPressure | None = field(default=None, repr=False)
@@ -152,7 +152,7 @@ class ShapedContact(PressedSolid):
         return (one.contact_radius, one.approach, one.peak_pressure, *extents)
 
     def _smeared(self, x: Any, y: Any) -> np.ndarray:
-        """What the elements may smear of the stress on the surface [Pa], where the pressure has its root.
+        """Stress on the surface [Pa] that the elements may smear where the pressure has its root.
 
         Along the surface the strain below a pressure is -(1 + nu)(1 - 2 nu)/E of it, so the stress changes by
         (1 - 2 nu)/(1 - nu) of what the pressure differs from the cubic through its values a share `RESOLVED`
@@ -253,7 +253,7 @@ def solve_shape(
     extent.  quality : "fast", "default" or "fine"; sets size, surface and harmonics that are not given, more
     of them for a contact with pointed ends on y = 0
     degree : of the polynomial in the pressure.   first : axes of the first contact over Hertz's
-    Raises ValueError for bad input, NotConverged where no such contact is found.
+    Raises ValueError for bad input, ElementsNotConverged where no such contact is found.
     """
     began = time.perf_counter()
     check_choice("quality", quality, tuple(QUALITIES))
@@ -323,7 +323,7 @@ def solve_shape(
         fold = shape.turns
         harmonics = fold * int(np.ceil(usual[2] / fold * max(1.0, AT_END * at_end / QUALITIES["default"][2])))
     check_positive(harmonics=harmonics)
-    unit = Units(length=reach, pressure=E, modulus=E)
+    unit = Scales(length=reach, pressure=E, modulus=E)
 
     grid = ShapedGrid(size, surface, harmonics, MARGIN, DENSITY)
     found = on_mesh(reach, grid, begin.of_degree(degree))
@@ -351,7 +351,7 @@ def solve_shape(
             (name, what, float(part[k] * units[k])) for k, name in enumerate(names) for what, part in parts
         )
         total = np.sqrt(sum(part**2 for _, part in parts)) * units
-        uncertainty = Uncertainty(float(total[0]), float(total[1]), float(total[2]), budget)
+        uncertainty = ElementUncertainty(float(total[0]), float(total[1]), float(total[2]), budget)
         extents = float(total[3]), float(total[4])
     d = fine[0].discretisation
     nodes = np.linspace(0, 2.6 * found.pressure.extents[0], 160)

@@ -132,14 +132,14 @@ class StarPressure:
         )
 
     def of_degree(self, degree: int) -> "StarPressure":
-        """The same as a polynomial of another degree; terms beyond it are left out."""
+        """Pressure as a polynomial of another degree; terms beyond it are left out."""
         known = dict(zip(self.terms(self.degree), self.coefficients, strict=True))
         c, empty = dict(zip(self.waves, self.contour, strict=True)), replace(self, degree=degree)
         b = np.array([known.get(one, 0.0) for one in self.terms(degree)])
         return replace(empty, contour=np.array([c.get(n, 0.0) for n in empty.waves]), coefficients=b)
 
     def scaled(self, length: float) -> "StarPressure":
-        """The same in units of ``length``."""
+        """Pressure with lengths in units of ``length``."""
         axes = self.axes[0] / length, self.axes[1] / length
         return replace(self, centre=self.centre / length, axes=axes)
 

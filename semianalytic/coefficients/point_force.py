@@ -119,7 +119,7 @@ def stress_columns(response: Response, friction: float) -> list[tuple[Array, int
 
 
 def displacement_columns(response: Response, friction: float) -> list[tuple[Array, int]]:
-    """As `stress_columns`, of `frf.displacement_frf`."""
+    """Displacement by `frf.displacement_frf`, in columns as `stress_columns` gives the stress."""
     uz, U = response("normal")
     columns = [(uz, 0), (U, 1)]
     if friction:
@@ -182,7 +182,7 @@ def half_space_stress(r: Array, z: Array, nu: float, friction: float) -> Array:
 
 
 def half_space_displacement(r: Array, z: Array, E: float, nu: float, friction: float) -> Array:
-    """The same of the displacement [m/N], (2 or 5, n). Johnson (1985) eqs. 3.18 and 3.76."""
+    """Displacement [m/N] in a half-space, (2 or 5, n). Johnson (1985) eqs. 3.18 and 3.76."""
     rho = np.hypot(r, z)
     w, r3, e = rho + z, rho**3, 1 - 2 * nu
     columns = [2 * (1 - nu) / rho + z * z / r3, r * (e / (rho * w) - z / r3)]

@@ -65,7 +65,7 @@ class Shape:
 
     @cached_property
     def radius(self) -> float:
-        """Of the disc of the same area [m]; the contact radius of a round contact."""
+        """Radius of the disc of the same area [m]; the contact radius of a round contact."""
         area = self.axes[0] * self.axes[1]
         if self.contour.any():
             area *= float(
@@ -226,12 +226,12 @@ class Shape:
         return replace(self, centre=centre, axes=(A, B), contour=contour, coefficients=b)
 
     def widened(self, shift: float) -> "Shape":
-        """The same with an edge ``shift`` [m] farther out."""
+        """Shape with its edge ``shift`` [m] farther out."""
         A, B = self.axes
         return replace(self, axes=(A + shift, B + shift))
 
     def with_terms(self, terms: int, highest: float = np.inf) -> "Shape":
-        """The same with as many polynomials, and all harmonics of its symmetry up to the ``highest``."""
+        """Shape with as many polynomials, and all harmonics of its symmetry up to the ``highest``."""
         families = (HALF,) if self.twin else (ROUND, EVEN, ACROSS, FULL)
         family = next(one for one in families if {*self.harmonics} <= {*one})
         wanted, held = tuple(n for n in family if abs(n) <= highest), min(terms, len(self.coefficients))

@@ -1,4 +1,4 @@
-"""What constant patches miss of a pressure with a smooth edge.
+"""Deflection and load that constant patches miss of a pressure with a smooth edge.
 
 Constant patches carry the pressure at their centres. At the edge, where p falls like the square root of the
 distance, the pressure f of ``edge_shape`` replaces them: each patch is divided into parts, whose mean

@@ -62,7 +62,7 @@ class Contact:
         return cls(pressure, np.zeros_like(pressure), 0.0, 0.0, 0.0, 0.0, 0, 1, ())
 
     def embedded(self, where: tuple[slice, slice], shape: tuple[int, int], open_gap: float) -> "Contact":
-        """The same contact on a grid of which it was a window; the gap beyond becomes ``open_gap``."""
+        """Contact on a grid of which it was a window; the gap beyond becomes ``open_gap``."""
         pressure, gap = np.zeros(shape), np.full(shape, open_gap)
         pressure[where], gap[where] = self.pressure, self.gap
         return replace(self, pressure=pressure, gap=gap)
@@ -70,7 +70,7 @@ class Contact:
 
 @dataclass(frozen=True, eq=False)
 class Problem:
-    """What is known of a contact.
+    """Known quantities of a contact: gap, load or approach, first guess.
 
     deflection : u = A p, linear, symmetric, positive.  gap : g0 [m], (nx, ny).
     total : sum of p over the patches [Pa], for load control; else approach : delta [m], the other one None.

@@ -118,7 +118,7 @@ class Level:
 
     @property
     def whole(self) -> "Level":
-        """The same contact on all the patches."""
+        """Level on all the patches, not a quarter of them."""
         whole, found = self.grid.whole, self.found
         found = replace(found, pressure=whole(found.pressure), gap=whole(found.gap))
         return replace(self, grid=replace(self.grid, quarter=False), found=found)

@@ -33,7 +33,7 @@ class Lattice:
     force: Array
 
     def coarser(self) -> "Lattice":
-        """The same forces on twice the spacing, by the adjoint of interpolation through ten sites."""
+        """Forces gathered on twice the spacing, by the adjoint of interpolation through ten sites."""
         force = _gather(_gather(self.force).T).T
         return Lattice(self.x0 - 10 * self.dx, self.y0 - 10 * self.dy, 2 * self.dx, 2 * self.dy, force)
 

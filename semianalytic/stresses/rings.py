@@ -154,7 +154,7 @@ class SmoothContour:
         return self.shape.pressure(x, y)
 
     def rings(self, x: Array, y: Array, scale: Array) -> Rings:
-        """As in `RingPressure`; the last ones are kept, for the other side of an interface."""
+        """Rings of `RingPressure`; the last ones are kept, for the other side of an interface."""
         return _around_contour(self, *(v.tobytes() for v in (x, y, scale)))
 
     def around(self, x: Array, y: Array, scale: Array) -> Rings:
@@ -250,7 +250,7 @@ class Twins:
         return self.one.pressure(x, y) + self.one.pressure(-np.asarray(x), y)
 
     def rings(self, x: Array, y: Array, scale: Array) -> Rings:
-        """As in `Disc`."""
+        """Rings of `Disc`."""
         # psi becomes pi - psi: 1, cos psi, sin psi, cos 2 psi, sin 2 psi, cos 3 psi, sin 3 psi
         signs = np.array([1.0, -1, 1, 1, -1, -1, 1])
         here, there = self.one.rings(x, y, scale), self.one.rings(-x, y, scale)
@@ -275,7 +275,7 @@ class Node:
         return _keys(np.asarray(x) / self.d) * _keys(np.asarray(y) / self.d) / self.d**2
 
     def rings(self, x: Array, y: Array, scale: Array) -> Rings:
-        """As in `Disc`; those around the same places, in patches, are kept for other patches."""
+        """Rings of `Disc`; those around the same places, in patches, are kept for other patches."""
         places = (np.round(x / self.d, 9), np.round(y / self.d, 9), np.minimum(scale / self.d, 1.0))
         unit = _around_node(*(v.tobytes() for v in places))
         harmonics = unit.harmonics / self.d**2

@@ -41,7 +41,7 @@ Array = NDArray[Any]
 
 
 @dataclass(frozen=True, eq=False)
-class Response:
+class FieldResponse:
     """Stress or displacement of a unit force on ``body``.
 
     closed(rho, z) : radial functions of the half-space of the first material, (columns, n).
@@ -96,18 +96,18 @@ def displacement(
     return _summed(places, z, layer, pressures, displacement_response(body))
 
 
-def stress_response(body: Body) -> Response:
-    """Of the stress."""
+def stress_response(body: Body) -> FieldResponse:
+    """Response of the stress to point forces."""
     nu = body.materials[0][1]
     closed = partial(half_space_stress, nu=nu, friction=body.friction)
-    return Response(body, 6, closed, partial(stress_below, body=body), combine_stress)
+    return FieldResponse(body, 6, closed, partial(stress_below, body=body), combine_stress)
 
 
-def displacement_response(body: Body) -> Response:
-    """Of the displacement."""
+def displacement_response(body: Body) -> FieldResponse:
+    """Response of the displacement to point forces."""
     E, nu, *_ = body.materials[0]
     closed = partial(half_space_displacement, E=E, nu=nu, friction=body.friction)
-    return Response(body, 3, closed, partial(displacement_below, body=body), combine_displacement)
+    return FieldResponse(body, 3, closed, partial(displacement_below, body=body), combine_displacement)
 
 
 def _summed(
@@ -115,7 +115,7 @@ def _summed(
     z: Array,
     layer: Array,
     pressures: Sequence[RingPressure],
-    response: Response,
+    response: FieldResponse,
 ) -> Array:
     """Components (pressures, components, n): the sums over the rings around each point."""
     out = np.zeros((len(pressures), response.components, z.size))
@@ -170,12 +170,12 @@ class PointField:
     """
 
     layer: int
-    response: Response
+    response: FieldResponse
     groups: list[tuple[float, bool, Array, list[PointForce]]]
     image: float
 
     @classmethod
-    def of(cls, z: Array, layer: int, response: Response) -> "PointField":
+    def of(cls, z: Array, layer: int, response: FieldResponse) -> "PointField":
         """For the depths z [m], ascending, of one layer.
 
         Fields vary with the distance from the force, in the first coating from its image: ``reach``.

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 
-from fem_reference import NotConverged, element_numbers, solve
+from fem_reference import ElementsNotConverged, element_numbers, solve
 from fem_reference.contact_solver import _size
 from fem_reference.element_numbers import CONTRASTS, QUALITY
 from verification.problem.point_answers import Points
@@ -48,7 +48,7 @@ def test_bad_input_is_refused_in_one_line(change, message):
 
 def test_too_few_iterations_raise_an_error_that_states_what_was_reached(monkeypatch):
     monkeypatch.setattr(element_numbers, "MOST_SOLVES", 1)
-    with pytest.raises(NotConverged, match=r" 1 solves.*moduli"):
+    with pytest.raises(ElementsNotConverged, match=r" 1 solves.*moduli"):
         solve(**{**GOOD, "coatings": ((4 * E, 0.3, 5e-5),)})
 
 

@@ -8,7 +8,7 @@ from fem_reference.not_round.gap_closing import Closed
 from fem_reference.not_round.harmonic_compliance import harmonic_compliance
 from fem_reference.not_round.off_axis import OffAxisFields, PressedSolid, discretised
 from fem_reference.not_round.star_contact import StarPressure
-from fem_reference.scaling import LayeredSolid, Units
+from fem_reference.scaling import LayeredSolid, Scales
 
 E, NU, F = 210e9, 0.3, 0.25
 STEEL = (E, NU)
@@ -23,7 +23,7 @@ def under_ellipse(axes, *, friction=0.0, harmonics=8, size=0.3):
     pressure = StarPressure.of_ellipse(0.0, axes, 2 * np.pi * axes[0] * axes[1] / 3 * P0 / E, 1, 2)
     found = Closed((compliance,), pressure, 1.0, 0, True, np.zeros((0, 0)))
     fields = OffAxisFields.of(compliance, found.nodal_loads, friction, pressure, size / 2)
-    return PressedSolid(fields, None, Units(length=A, pressure=E, modulus=E))
+    return PressedSolid(fields, None, Scales(length=A, pressure=E, modulus=E))
 
 
 def test_a_round_pressure_has_the_fields_of_harmonics_0_and_1():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import semianalytic
-from fem_reference import NotConverged, solve_shape
+from fem_reference import ElementsNotConverged, solve_shape
 from fem_reference.not_round.harmonic_compliance import HarmonicCompliance
 from fem_reference.not_round.indenter_height import touching_shape
 from verification.problem.coated_contact import CoatedContact
@@ -129,7 +129,7 @@ def test_beside_its_own_edge_the_pressure_is_as_uncertain_as_it_is_wrong():
 
 
 def test_a_contact_with_a_hole_is_refused():
-    with pytest.raises(NotConverged, match="the shape or the load"):
+    with pytest.raises(ElementsNotConverged, match="the shape or the load"):
         solved(indenter=("lobes", (3.0, 2e-6, 86e-6)))
 
 

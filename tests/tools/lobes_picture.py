@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from verification.cases.case_file import read_case, shaped_cases
 from verification.manual.generated_blocks import SOURCE
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.indenter_shape import height_of
 from verification.sources.source_registry import METHODS, SOURCES
 
@@ -68,7 +68,7 @@ def _drawn(rows: Sequence[tuple[str, Array]], x: Array, y: Array) -> Figure:
     return figure
 
 
-def _fields(solution: Solution, problem: CoatedContact, x: Array, y: Array) -> Array:
+def _fields(solution: ContactSolution, problem: CoatedContact, x: Array, y: Array) -> Array:
     """Pressure [Pa], gap [m], sigma_xx [Pa] at the base of the coating."""
     height = height_of(problem.indenter, problem.radius)(x, y)
     gap = height + solution.displacement(x, y, 0.0)[2] - solution.approach

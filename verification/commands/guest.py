@@ -114,7 +114,7 @@ def pack(
 
 
 def _print_mesh(guest: Guest, questions: Sequence[Question]) -> None:
-    """Where the points of each question lie and how close together, in the units of the guest."""
+    """Prints where the points of each question lie and how close together, in the units of the guest."""
     heads = ("contact edge at r =", "interfaces at z =", "farthest r", "deepest z", "closest points")
     table = named_table("problem", *heads)
     for one in questions:

@@ -153,7 +153,7 @@ def sentence(case: Case, film: int, fit: FilmFit) -> str:
 
 
 def _warnings(case: Case, film: int, curve: IndentationCurve, fit: FilmFit) -> list[str]:
-    """What casts doubt on the fit, a line each."""
+    """Warnings on what casts doubt on the fit, a line each."""
     found = [line for line in case.warnings if line.startswith("contact radius") and fit.kind != "punch"]
     if fit.peak == fit.peak:
         found += beyond_limits(fit.peak, case.limits)

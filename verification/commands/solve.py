@@ -19,6 +19,7 @@ from verification.cases.materials import SHIPPED as SHIPPED_MATERIALS
 from verification.cases.plausibility import refused
 from verification.cases.toml_file import NO_SOURCE, is_number, load_toml
 from verification.cases.unit_numbers import in_si
+from verification.commands.common.answer_words import planes_text, spread_text, value_text
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.known_folders import require_format
 from verification.commands.common.named_files import SHIPPED, path_of
@@ -61,7 +62,6 @@ from verification.desk.stack_text import body_label, described, outside_verified
 from verification.desk.table_file import FORMATS as TABLE_FORMATS
 from verification.desk.table_file import answer_rows, write_cells
 from verification.judging.outcome import Outcome
-from verification.problem.coated_contact import CoatedContact
 from verification.problem.display_units import prefixed
 from verification.problem.point_answers import FLAT
 from verification.problem.quantity import QUANTITIES
@@ -72,7 +72,6 @@ from verification.sources.source_registry import METHODS
 
 METHOD, SECOND = METHODS
 COLUMNS = 79  # of the summary
-DIGITS = 5  # of a value, unless its uncertainty ends before
 
 
 @with_exit_code
@@ -356,13 +355,13 @@ def _print(
     between = ("lowest", "highest") if spread else ()
     numbers = _table(("contact", "unit"), ("value", "±", *more, *between))
     axes = "xyz" if case.problem.elliptical else "xz"
-    places = (f"{axis} {units.length}" for axis in axes)
-    shown_in = (units.stress, f"± {units.stress}", *places, *between)
+    along = (f"{axis} {units.length}" for axis in axes)
+    shown_in = (units.stress, f"± {units.stress}", *along, *between)
     table = _table(("largest", "place"), (*shown_in, *(f"{head} {units.stress}" for head in more)))
     for name, (value, stated) in first.numbers.items():
         pressure = name not in HALF_AXES and QUANTITIES[name].unit == "Pa"
         unit, scale = (units.stress, units.pascal) if pressure else (units.length, units.metre)
-        cells = [_value(value / scale, stated and stated / scale), _spread(stated, scale)]
+        cells = [value_text(value / scale, stated and stated / scale), spread_text(stated, scale)]
         ends = [f"{end / scale:.4g}" for end in spread.ends[name,]] if spread else []
         symbol = HALF_AXES.get(name) or QUANTITIES[name].symbol
         numbers.add_row(symbol, unit, *cells, *checked((name,), scale), *ends)
@@ -375,8 +374,8 @@ def _print(
         key = (at.body, at.quantity, at.where)
         rounded = (round(getattr(at, axis) / units.metre, decimals) + 0.0 for axis in axes)  # no -0
         places = ["-" if math.isnan(at.x) else f"{s:.{decimals}f}" for s in rounded]
-        shown = [_value(at.value / units.pascal, at.uncertainty / units.pascal)]
-        shown.append(_spread(at.uncertainty, units.pascal))
+        shown = [value_text(at.value / units.pascal, at.uncertainty / units.pascal)]
+        shown.append(spread_text(at.uncertainty, units.pascal))
         ends = [f"{end / units.pascal:.4g}" for end in spread.ends[key]] if spread else []
         table.add_row(at.quantity, where, *shown, *places, *ends, *checked(key, units.pascal))
     said = (
@@ -399,22 +398,13 @@ def _print(
         "",
         table,
         "",
-        f"tension positive, in the plane{_planes(case.problem)}, z into each body",
+        f"tension positive, in the plane{planes_text(case.problem)}, z into each body",
         *filter(None, [shown_of]),
     )
     if modes:
         print_out("", _limits(case, modes if every else worst_of_each(case, modes)), "")
     if halved:
         print_out("± contains the slicing: at least the change by half the sub-layers, in the plane thrice")
-
-
-def _planes(problem: CoatedContact) -> str:
-    """The planes in which the largest stresses are found."""
-    if not problem.elliptical:
-        return " y = 0, x along sliding"
-    if problem.friction:
-        return " y = 0, x along sliding; across it, where the plane x = 0 has no symmetry, none is found"
-    return "s y = 0 and x = 0"
 
 
 def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:
@@ -444,17 +434,3 @@ def _unused(case: Case, *, checked: bool) -> list[str]:
         for key in ("claim", "resolve", METHODS[1])
         if key in given and not (checked and key == METHODS[1])
     ]
-
-
-def _value(value: float, spread: float | None) -> str:
-    """``value`` in at most DIGITS digits, and in none beyond the first of its uncertainty."""
-    if value == 0:
-        return "0"
-    decimals = DIGITS - 1 - math.floor(math.log10(abs(value)))
-    if spread and math.isfinite(spread):
-        decimals = min(decimals, -math.floor(math.log10(spread)))
-    return f"{value:.{max(decimals, 0)}f}"
-
-
-def _spread(stated: float | None, scale: float) -> str:
-    return "-" if stated is None or math.isnan(stated) else f"{stated / scale:.0e}"

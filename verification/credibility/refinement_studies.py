@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from verification.problem.array_types import FloatArray
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.gauss_legendre import gauss_legendre
 from verification.problem.line_profile import lines_of
 from verification.problem.quantity import QUANTITIES as ALL
@@ -81,7 +81,9 @@ def order_of(resolution: Sequence[float], error: Sequence[float]) -> float | Non
     return float(-np.polyfit(np.log(N[used]), np.log(found[used]), 1)[0])
 
 
-def errors_against(exact: Solution, problem: CoatedContact) -> Callable[[Solution], dict[str, float]]:
+def errors_against(
+    exact: ContactSolution, problem: CoatedContact
+) -> Callable[[ContactSolution], dict[str, float]]:
     """Error of each of ``QUANTITIES`` of a solution: p0, a, approach relative, and
 
     pressure = [ int (p - p_exact)^2 dA / (pi a^2) ]^(1/2) / p0  over the disc of the exact radius a
@@ -104,7 +106,7 @@ def errors_against(exact: Solution, problem: CoatedContact) -> Callable[[Solutio
             places.append((x, np.full_like(x, line.depth), line.layer))
     stresses = [exact.stress(x, 0.0, z, layer) for x, z, layer in places]
 
-    def errors(found: Solution) -> dict[str, float]:
+    def errors(found: ContactSolution) -> dict[str, float]:
         error = found.pressure(r[:, None] * np.cos(angle), r[:, None] * np.sin(angle)) - p
         worst = [
             np.abs(found.stress(x, 0.0, z, layer) - sigma).max()
@@ -125,7 +127,7 @@ def refined_grid(
     *,
     solid: str = "",
     setting: str = "",
-    solve: Callable[..., Solution] = solve_semianalytic,
+    solve: Callable[..., ContactSolution] = solve_semianalytic,
     **numerics: Any,
 ) -> Refinement:
     """``problem`` by the semi-analytical method at each number of ``patches`` a side.
@@ -138,7 +140,7 @@ def refined_grid(
 
 
 def refined_mesh(
-    problem: CoatedContact, order: int, *, solid: str, solve: Callable[..., Solution]
+    problem: CoatedContact, order: int, *, solid: str, solve: Callable[..., ContactSolution]
 ) -> Refinement:
     """``problem`` by elements of ``order`` on the fast and the default mesh; else as ``refined_grid``."""
     from fem_reference.element_numbers import QUALITY

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.either_body import on_body
 from verification.problem.point_answers import BALL, Points
 from verification.problem.quantity import largest_shear, largest_strain, von_mises
@@ -90,7 +90,7 @@ def first_principal(s: Array) -> Array:
 
 
 def stresses(
-    solution: Solution,
+    solution: ContactSolution,
     problem: CoatedContact,
     residual: Mapping[str, tuple[float, ...]] | None = None,
     layers: Mapping[str, tuple[int, ...]] | None = None,
@@ -157,7 +157,7 @@ class _Layers:
 
     def __init__(
         self,
-        solution: Solution,
+        solution: ContactSolution,
         problem: CoatedContact,
         residual: tuple[float, ...],
         sublayers: tuple[int, ...],

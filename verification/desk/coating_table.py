@@ -105,7 +105,7 @@ def read_rows(path: Path) -> list[Case]:
 
 
 def _head(text: str) -> tuple[str, str, str] | None:
-    """What a column holds: of which solid, which property, in which unit; None where it is unknown."""
+    """Content of a column: of which solid, which property, in which unit; None where it is unknown."""
     found = _HEAD.fullmatch(" ".join(text.split()).casefold())
     if found is None:
         return None

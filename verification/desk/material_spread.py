@@ -52,7 +52,7 @@ class Spread:
         return {"ranges": [one.words for one in self.ranges], "ends": ends}
 
     def sentence(self, case: Case, modes: tuple[LayerMode, ...]) -> str:
-        """What the ranges mean for peak pressure, tension in the coatings, and verdict."""
+        """Effect of the ranges on peak pressure, tension in the coatings, and verdict."""
         tensions = {key: ends for key, ends in self.ends.items() if key[1:2] == ("sigma_1",)}
         coated = {key: ends for key, ends in tensions.items() if key[2].startswith("coating")} or tensions
         largest = max(coated, key=lambda key: coated[key][1])

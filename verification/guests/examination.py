@@ -57,7 +57,7 @@ class Examined:
 
     @property
     def remarks(self) -> Counter[str]:
-        """What coatcheck has to say about the answers themselves, with the number of cases."""
+        """Remarks on the answers themselves, with the number of cases."""
         return Counter(text for replies in self.replies.values() for text in set(replies[-1].answer.warnings))
 
     @cached_property

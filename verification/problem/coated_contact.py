@@ -182,7 +182,7 @@ class ScalarUncertainty:
     budget: tuple[tuple[str, str, float], ...] = ()
 
 
-class Solution(Protocol):
+class ContactSolution(Protocol):
     """Solution of a contact by a method or a reference: a source that answers ``sample``.
 
     sample : one field at points, or one scalar, see ``point_answers``; of a contact with an elastic ball its

@@ -168,6 +168,6 @@ def message_of(error: Exception) -> str:
     """The message of ``error`` in one line."""
     text = " ".join(str(error).split())[:500]
     # Both methods raise ValueError or their own NotConverged with a whole message; any other has its type.
-    if isinstance(error, ValueError) or type(error).__name__ == "NotConverged":
+    if isinstance(error, ValueError) or type(error).__name__.endswith("NotConverged"):
         return text
     return f"{type(error).__name__}: {text or 'no message'}"

@@ -13,7 +13,7 @@ from verification.cases.plausibility import strain_warning
 from verification.judging.invariants import Invariant, check, resolved
 from verification.judging.verdict import Claim, Outcome, Verdict, compare, judge
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.line_profile import Profile, all_lines, lines_of
 from verification.problem.point_answers import FLAT
 from verification.problem.quantity import QUANTITIES, SCALARS, largest_strain
@@ -39,7 +39,7 @@ class SolvedCase:
     resolved : invariants between solutions of the problem and of others, where the case has ``resolve``.
     """
 
-    solutions: Mapping[str, Solution]
+    solutions: Mapping[str, ContactSolution]
     outcomes: Mapping[str, SourceResult]
     resolved: tuple[Invariant, ...] = ()
 
@@ -49,7 +49,7 @@ def solve_case(case: Case, available: Mapping[str, Solver] | None = None) -> Sol
     available = solvers() if available is None else available
     wanted = {source for claim in case.claims for source in claim.between}
     outcomes: dict[str, SourceResult] = {}
-    solutions: dict[str, Solution] = {}
+    solutions: dict[str, ContactSolution] = {}
     for source in (name for name in available if name in wanted):
         solution, outcomes[source] = attempted(source, partial(_solved, case, source, available[source]))
         if solution is not None:
@@ -63,8 +63,8 @@ def keywords_of(case: Case, source: str) -> dict[str, Any]:
     return case.numerics.get(source, {}) | stated
 
 
-def _solved(case: Case, source: str, solve: Solver) -> Solution:
-    solution: Solution = solve(case.problem, keywords_of(case, source))
+def _solved(case: Case, source: str, solve: Solver) -> ContactSolution:
+    solution: ContactSolution = solve(case.problem, keywords_of(case, source))
     for name in SCALARS:
         if not np.isfinite(value := solution.sample(None, name, False).value):
             raise ValueError(f"{name} = {value}; the solution is not finite")

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from verification.cases.published_file import PublishedCase
 from verification.cases.published_table import PublishedColumn
 from verification.judging.verdict import Outcome, Verdict, compare, judge
-from verification.problem.coated_contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution, PrescribedLoad
 from verification.problem.line_profile import Profile
 from verification.problem.loading_curve import Problem
 from verification.problem.quantity import QUANTITIES
@@ -135,7 +135,7 @@ def _departures(item: PublishedColumn) -> str:
 
 
 def _profile(
-    solution: Solution | Loading, source: str, item: PublishedColumn, case: PublishedCase
+    solution: ContactSolution | Loading, source: str, item: PublishedColumn, case: PublishedCase
 ) -> Profile:
     problem = case.problem
     exact = problem.a_h if isinstance(problem, CoatedContact) and problem.homogeneous else None

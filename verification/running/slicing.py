@@ -13,7 +13,7 @@ import numpy as np
 
 from verification.cases.case_file import Case, parse_case
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import Solution
+from verification.problem.coated_contact import ContactSolution
 from verification.problem.either_body import on_body
 from verification.problem.quantity import SCALARS
 from verification.sources.source_record import Solver
@@ -37,7 +37,7 @@ def sliced(change: float, before: float = 0.0, key: tuple[str, ...] = ()) -> flo
 
 
 def slicing_remarks(
-    case: Case, solutions: Mapping[str, Solution], available: Mapping[str, Solver]
+    case: Case, solutions: Mapping[str, ContactSolution], available: Mapping[str, Solver]
 ) -> tuple[str, ...]:
     """How much half of the sub-layers changes: scalars, sigma_xx at the outer sides of each graded coating.
 
@@ -63,7 +63,7 @@ def slicing_remarks(
     )
 
 
-def _sigma_xx(case: Case, solution: Solution, x: Array) -> Iterator[Array]:
+def _sigma_xx(case: Case, solution: ContactSolution, x: Array) -> Iterator[Array]:
     """sigma_xx along ``x`` at the top and the base of each coating of both bodies."""
     for body, layers in case.layers.items():
         z, side = (0.0, *case.problem.seen_from(body).interfaces), on_body(solution, body)

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from verification.cases.case_file import Case
-from verification.problem.coated_contact import Solution
+from verification.problem.coated_contact import ContactSolution
 from verification.running.case_result import CaseResult
 from verification.running.checked_files import (
     MAX_BYTES,
@@ -73,7 +73,7 @@ def fields_path(folder: Path, name: str) -> Path:
     return folder / "fields" / f"{name}.json"
 
 
-def write_fields(case: Case, solutions: Mapping[str, Solution], folder: Path) -> None:
+def write_fields(case: Case, solutions: Mapping[str, ContactSolution], folder: Path) -> None:
     """Write the fields of ``solutions`` into ``folder``/fields, the file of checksums last.
 
     NAME-fem.vtm : an index of NAME-fem-layer-K.vtr, the plane y = 0 of a layer each, so that what jumps at an

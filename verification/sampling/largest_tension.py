@@ -14,7 +14,7 @@ from numpy.polynomial import chebyshev
 
 from verification.judging.invariants.companion_uncertainty import followed
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.point_answers import Points
 from verification.sources.references.layered_half_space import bending_length
 
@@ -47,7 +47,7 @@ class Search:
     Its samples at ``x`` are evaluated by the caller, in one call with those of the surface line.
     """
 
-    solution: Solution
+    solution: ContactSolution
     problem: CoatedContact
 
     @cached_property
@@ -161,7 +161,7 @@ class Search:
         return Tension(best.value, best.place, best.uncertainty, best.place_uncertainty + apart)
 
 
-def around_edge(solution: Solution) -> Array:
+def around_edge(solution: ContactSolution) -> Array:
     """Radii [m] at which ``edge_uncertainty`` needs sigma_xx with its uncertainty, (5,); the first is a."""
     a, U = solution.sample(None, "contact_radius")
     shift = 0.0 if U is None else U
@@ -193,5 +193,5 @@ def _slopes(value: Array, s: Array, numbers: list[int]) -> Array:
     return np.stack([chebyshev.chebval(s, chebyshev.chebder(c[:terms])) for terms in numbers])
 
 
-def _tension(solution: Solution, x: Array) -> Array:
+def _tension(solution: ContactSolution, x: Array) -> Array:
     return solution.stress(x, 0.0, 0.0, layer=0)[0, 0]

@@ -7,7 +7,7 @@ import numpy as np
 
 from verification.judging.invariants.companion_uncertainty import followed
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.either_body import on_body
 from verification.problem.line_profile import EDGE_LINE, Line, Profile, line_of
 from verification.problem.point_answers import BALL, EDGE, FIXED, FLAT, Points
@@ -19,7 +19,7 @@ from verification.sampling.largest_tension import BESIDE, ENDS, Search, around_e
 NEAR_EDGE = np.array([0.0, 1e-4, 1e-3, 1e-2])
 
 
-def sample_contact(solution: Solution, source: str) -> tuple[Profile, ...]:
+def sample_contact(solution: ContactSolution, source: str) -> tuple[Profile, ...]:
     """Every scalar of the contact that the solution gives as a profile of one point [SI]."""
     found = []
     for name in (*SCALARS, *SLOPES):
@@ -39,7 +39,7 @@ SHAPED = 21  # points on either side of x = 0, of rings about which there are no
 
 
 def positions(
-    problem: CoatedContact, lines: Sequence[Line], solutions: Mapping[str, Solution]
+    problem: CoatedContact, lines: Sequence[Line], solutions: Mapping[str, ContactSolution]
 ) -> dict[Line, Array]:
     """Positions along each line [m]: in x the surface nodes of the first solution, in z inside the layers.
 
@@ -82,7 +82,7 @@ def positions(
     return {line: along(line) for line in lines}
 
 
-def ends_of(solution: Solution) -> Array:
+def ends_of(solution: ContactSolution) -> Array:
     """Ends of the contact on y = 0 [m], just outside it, found between the surface nodes."""
     x = solution.surface_nodes
     least = 1e-6 * solution.peak_pressure
@@ -96,7 +96,7 @@ def ends_of(solution: Solution) -> Array:
     return np.where(begins, low, high)
 
 
-def _clear_of_edges(solution: Solution, line: Line, at: Array, distance: float) -> Array:
+def _clear_of_edges(solution: ContactSolution, line: Line, at: Array, distance: float) -> Array:
     """Positions within ``distance`` of which the contact neither begins nor ends, all [m]."""
     least = 1e-6 * solution.peak_pressure
     x, y, z = line.points(at)
@@ -106,7 +106,7 @@ def _clear_of_edges(solution: Solution, line: Line, at: Array, distance: float) 
     return at[loaded.all(axis=1) | ~loaded.any(axis=1)]
 
 
-def edge_of(solutions: Mapping[str, Solution]) -> float:
+def edge_of(solutions: Mapping[str, ContactSolution]) -> float:
     """Contact radius [m] of the last solution, the reference: where the surface line has r = a."""
     return float(list(solutions.values())[-1].contact_radius)
 
@@ -119,7 +119,7 @@ def _depths(problem: CoatedContact, a: float) -> Array:
 
 
 def sample(
-    solution: Solution,
+    solution: ContactSolution,
     source: str,
     line: Line,
     position: Array,
@@ -197,7 +197,7 @@ def _has_peak(problem: CoatedContact | None) -> TypeGuard[CoatedContact]:
     return problem is not None and problem.indenter is None
 
 
-def _at_edge(solution: Solution, value: Array, U: Array, field: str) -> Array:
+def _at_edge(solution: ContactSolution, value: Array, U: Array, field: str) -> Array:
     """Uncertainty at the solution's own edge from values at ``around_edge`` of each side, (..., 5 sides)."""
 
     def at_ends(one: Any) -> Array:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.line_profile import Line, Profile
 from verification.problem.point_answers import FLAT, Points
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
@@ -44,7 +44,7 @@ def positions(problem: CoatedContact, line: Line, a: float, nodes: Array) -> Arr
     return np.concatenate([-s[:0:-1], s]) if problem.friction else s
 
 
-def sample(solution: Solution, source: str, line: Line, position: Array) -> tuple[Profile, ...]:
+def sample(solution: ContactSolution, source: str, line: Line, position: Array) -> tuple[Profile, ...]:
     """Every quantity of ``line`` at ``position`` [m]; no displacement where the source claims none."""
     x, y, z = line.points(position)
     found: list[tuple[str, Array, Array | None]] = []

@@ -6,7 +6,7 @@ from typing import cast
 import numpy as np
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution, PrescribedLoad
 from verification.problem.evaluation_points import TablePoints
 from verification.problem.loading_curve import LoadingCurve
 from verification.problem.point_answers import EDGE, FIXED, Points
@@ -16,7 +16,7 @@ from verification.sources.loading_solution import Loading
 
 
 def values(
-    solution: Solution | Loading,
+    solution: ContactSolution | Loading,
     quantity: str,
     at: TablePoints,
     problem: CoatedContact | PrescribedLoad | LoadingCurve,
@@ -64,7 +64,7 @@ def _everywhere(at: TablePoints, value: float, U: float | None) -> tuple[Array, 
     return np.full(at.x.shape, value), None if U is None else np.full(at.x.shape, U)
 
 
-def _beside_edge(solution: Solution, at: TablePoints, edge: float | None) -> Points:
+def _beside_edge(solution: ContactSolution, at: TablePoints, edge: float | None) -> Points:
     """The points, those beside the exact ``edge`` [m] at the same share of the way to the solution's own.
 
     At a fixed x next to the edge an error da of the radius changes the pressure by q sqrt(2 da/a), whatever
@@ -77,7 +77,7 @@ def _beside_edge(solution: Solution, at: TablePoints, edge: float | None) -> Poi
     return Points(at.x * ratio, at.y * ratio, at.z, frame=np.where(near, EDGE, FIXED))
 
 
-def _extreme(solution: Solution, quantity: str) -> tuple[float, float | None]:
+def _extreme(solution: ContactSolution, quantity: str) -> tuple[float, float | None]:
     """The largest weighted sum of stresses on the axis, where a parabola through three points has its top."""
     z = solution.contact_radius * np.linspace(0.3, 0.7, 21)
     weights = np.array(QUANTITIES[quantity].weights)

@@ -11,7 +11,7 @@ import numpy as np
 
 from verification.judging.invariant_verdict import Invariant, decide
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.point_answers import Points
 from verification.problem.quantity import IN_PLANE
 from verification.sources.source_registry import METHODS
@@ -41,7 +41,7 @@ class StressPlane:
     failures: Mapping[str, str]
 
 
-def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, Solution]) -> StressPlane:
+def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, ContactSolution]) -> StressPlane:
     """Stresses of the methods among ``solutions`` at the same points; a method that fails leaves its message.
 
     interfaces : depths [m] from the surface down.
@@ -63,7 +63,7 @@ def sample_plane(interfaces: tuple[float, ...], solutions: Mapping[str, Solution
 
 
 def plane_invariants(
-    plane: StressPlane, solutions: Mapping[str, Solution], problem: CoatedContact
+    plane: StressPlane, solutions: Mapping[str, ContactSolution], problem: CoatedContact
 ) -> tuple[Invariant, ...]:
     """The stresses of ``plane`` are those at its points: two of each layer, beside and below the contact."""
     columns = np.abs(plane.x[:, None] - plane.radius * CHECKED).argmin(axis=0) if plane.x.size else []
@@ -82,7 +82,7 @@ def plane_invariants(
     return tuple(found)
 
 
-def _columns(solution: Solution) -> Array:
+def _columns(solution: ContactSolution) -> Array:
     """Surface nodes drawn [m], the one at x = 0 among them."""
     a, nodes = solution.contact_radius, solution.surface_nodes
     inside = np.flatnonzero(np.abs(nodes) <= WIDTH * a)

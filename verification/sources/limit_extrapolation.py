@@ -8,12 +8,17 @@ from typing import Any, TypeVar
 import numpy as np
 
 from verification.problem.array_types import Array, Coatings
-from verification.problem.coated_contact import CoatedContact, PrescribedLoad, ScalarUncertainty, Solution
+from verification.problem.coated_contact import (
+    CoatedContact,
+    ContactSolution,
+    PrescribedLoad,
+    ScalarUncertainty,
+)
 from verification.problem.point_answers import UNSUPPORTED, Answer, Points, Sampled
 from verification.problem.quantity import SCALARS
 
 Problem = TypeVar("Problem", bound=CoatedContact | PrescribedLoad)
-Solver = Callable[[CoatedContact | PrescribedLoad], Solution]
+Solver = Callable[[CoatedContact | PrescribedLoad], ContactSolution]
 STEP = 1e-3  # of Poisson's ratio, at most
 NEAR = 1e-4  # of 1/2: mean stresses of elements lose digits as 1/(1 - 2 nu)
 # (a/h)^2 times the step: a bonded film of thickness h deforms by its compressibility, over that by shear, as
@@ -21,7 +26,7 @@ NEAR = 1e-4  # of 1/2: mean stresses of elements lose digits as 1/(1 - 2 nu)
 CONFINED = 0.01
 
 
-def extrapolated(problem: CoatedContact | PrescribedLoad, solve: Solver) -> Solution:
+def extrapolated(problem: CoatedContact | PrescribedLoad, solve: Solver) -> ContactSolution:
     """The solution with nu = 1/2 or near it; that of ``solve`` for a problem without such a layer.
 
     The parabola through t = 1, 2, 3 at t = 0, with nu - step t in those layers: step = 1e-3, or ``CONFINED``
@@ -69,9 +74,9 @@ class Extrapolated(Sampled):
     extrapolated radius is uncertain, which moves fields beside the edge.
     """
 
-    near: Solution
-    further: Solution
-    third: Solution
+    near: ContactSolution
+    further: ContactSolution
+    third: ContactSolution
 
     def sample(self, points: Points | None, quantity: str, uncertainty: bool = True) -> Answer:
         """Value and uncertainty in the limit; no uncertainty where the solutions state none."""

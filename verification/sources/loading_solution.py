@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.loading_curve import LoadingCurve
 from verification.problem.point_answers import Answer, Points
 from verification.sources.limit_extrapolation import short_of_limit
@@ -89,7 +89,7 @@ def pressed_at(problem: LoadingCurve, at: float) -> tuple[float, Pressed]:
 
 
 def loading(
-    problem: LoadingCurve, solve: Callable[[CoatedContact], Solution], *, limits: bool = False
+    problem: LoadingCurve, solve: Callable[[CoatedContact], ContactSolution], *, limits: bool = False
 ) -> Loading:
     """The curve by a solver of one contact under a load.
 

@@ -21,7 +21,7 @@ from scipy.interpolate import make_interp_spline
 
 from verification.judging.invariants.companion_uncertainty import followed
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import Solution
+from verification.problem.coated_contact import ContactSolution
 from verification.problem.point_answers import Points
 from verification.problem.quantity import IN_PLANE
 from verification.sampling.largest_tension import around_edge, edge_uncertainty
@@ -42,7 +42,7 @@ class Parts:
     stated : whether its uncertainty is evaluated too.
     """
 
-    solution: Solution
+    solution: ContactSolution
     friction: float
     stated: bool = True
 

@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import minimize_scalar
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.quantity import von_mises
 from verification.study.friction_planes import (
     XX,
@@ -55,7 +55,7 @@ class Located:
 
 
 def quantities(
-    solution: Solution,
+    solution: ContactSolution,
     problem: CoatedContact,
     frictions: Sequence[float],
     residual: Sequence[float] = (0.0,),

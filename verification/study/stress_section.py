@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.study.friction_planes import in_plane
 
 COLUMNS, ROWS = 161, 24  # points along x, in depth of a layer
@@ -23,7 +23,7 @@ class StressSection:
 
 
 def section(
-    solution: Solution,
+    solution: ContactSolution,
     problem: CoatedContact,
     half_width: float,
     deepest: float,

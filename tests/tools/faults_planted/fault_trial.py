@@ -19,7 +19,7 @@ from verification.judging.invariants import resolved
 from verification.judging.invariants.resolved_invariants import NAMES
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import Solution
+from verification.problem.coated_contact import ContactSolution
 from verification.problem.line_profile import EDGE_LINE, Profile, all_lines
 from verification.problem.quantity import DISPLACEMENTS
 from verification.regression.baseline_change import State, drift, measured
@@ -248,7 +248,7 @@ def _judged(case: Case, clean: CaseResult, fault: Fault) -> tuple[list[Check], P
     return checks, fresh
 
 
-def _sampled(case: Case, clean: CaseResult, source: str, solution: Solution) -> list[Profile]:
+def _sampled(case: Case, clean: CaseResult, source: str, solution: ContactSolution) -> list[Profile]:
     places = {profile.line: profile.position for profile in clean.profiles}
     found = list(sample_contact(solution, source))
     radii = [p for p in clean.profiles if (p.quantity, p.line) == ("contact_radius", "contact")]

@@ -7,7 +7,7 @@ from typing import cast
 import numpy as np
 
 from verification.credibility.self_tests.stand_ins import ON_BALL, Answers, Labelled, labelled, moved
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.evaluation_points import TablePoints
 from verification.problem.line_profile import line_of, lines_of, oblique_lines
 from verification.problem.point_answers import BALL
@@ -31,7 +31,7 @@ PLACES = {
 
 
 def of_sampling() -> Answers:
-    solution = cast(Solution, Labelled())
+    solution = cast(ContactSolution, Labelled())
     scalars = {p.quantity: p for p in sample_contact(solution, "known")}
     for name, value, U in (
         ("peak_pressure", 3e9, 2e6),
@@ -72,7 +72,7 @@ def of_points_of_tables() -> Answers:
     """Quantities of a table off the plane y = 0, one point in each layer."""
     x, y, z = (np.array(v) for v in ([1e-5, 2e-5], [3e-5, 5e-5], [4e-5, 9e-5]))
     at = TablePoints.of(x, y, z, PROBLEM.coatings, None, "m", 1.0)
-    solution = cast(Solution, Labelled())
+    solution = cast(ContactSolution, Labelled())
     places = list(zip(x.tolist(), y.tolist(), z.tolist(), strict=True))
     names = [f"sigma_{c}" for c in ("xx", "xy", "xz", "yy", "yz", "zz")] + [f"u_{c}" for c in "xyz"]
     wanted = {name: [_known(name, place, layer) for layer, place in enumerate(places)] for name in names}

@@ -17,7 +17,7 @@ from verification.evidence.enclosure_record import (
 )
 from verification.judging.invariant_verdict import decide
 from verification.judging.verdict import Outcome, compare, judge
-from verification.problem.coated_contact import CoatedContact, Solution, keywords
+from verification.problem.coated_contact import CoatedContact, ContactSolution, keywords
 from verification.problem.line_profile import Profile
 from verification.problem.point_answers import Points
 from verification.sources.references import integral_equation
@@ -109,14 +109,16 @@ def of_enclosures() -> Answers:
             yield what, distance <= ROUNDING * abs(bounds.middle), True
 
 
-def distances(enclosure: Enclosure, solution: Solution) -> Iterator[tuple[Bounds, float, float | None]]:
+def distances(
+    enclosure: Enclosure, solution: ContactSolution
+) -> Iterator[tuple[Bounds, float, float | None]]:
     """Each bound with the distance of the solution's value from it, then U of this value if stated."""
     for bounds in enclosure.bounds:
         value, U = _value(enclosure.problem, solution, bounds)
         yield bounds, bounds.distance(value), U
 
 
-def _value(problem: CoatedContact, solution: Solution, bounds: Bounds) -> tuple[float, float | None]:
+def _value(problem: CoatedContact, solution: ContactSolution, bounds: Bounds) -> tuple[float, float | None]:
     if bounds.quantity == "sigma_xx":
         layer = 1 if bounds.line == LOWER else 0
         z = 0.0 if bounds.line == SURFACE else problem.interfaces[0]

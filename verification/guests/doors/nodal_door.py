@@ -38,7 +38,7 @@ ODD = np.array([[p.count(axis) % 2 for p in (*SYMMETRIC, (0,), (1,), (2,))] for 
 
 
 def answer_of(path: Path, axes: list[str], question: Question, stated: bool) -> dict[str, Any]:
-    """What the nodes of ``path`` say about ``question``, with remarks, as parts of an answer.
+    """Parts of an answer to ``question`` by the nodes of ``path``, with remarks.
 
     stated : whether the interpolation error is stated as the uncertainty.   Raises ProtocolError.
     """

@@ -9,7 +9,7 @@ from verification.judging.invariant_verdict import Invariant, decide, layer_name
 from verification.judging.invariants.central_differences import Stencil
 from verification.judging.invariants.companion_uncertainty import INNER, followed
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution, PrescribedLoad
 from verification.problem.either_body import on_body
 from verification.problem.gauss_legendre import gauss_legendre
 from verification.problem.point_answers import Points
@@ -25,7 +25,7 @@ EVALUATED = 2e-8
 AT_ONE_PLACE = 3e-9
 
 
-def bonded_traction(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
+def bonded_traction(solution: ContactSolution, source: str, problem: CoatedContact, k: int) -> Invariant:
     """sigma_xz, sigma_yz and sigma_zz are the same on both sides of interface ``k``, from 1."""
     x, y, z = _line(solution, problem, k)
     (upper, U_upper), (lower, U_lower) = (
@@ -37,7 +37,7 @@ def bonded_traction(solution: Solution, source: str, problem: CoatedContact, k: 
     return decide(f"bonded tractions, interface {k}", source, law, jump, bound)
 
 
-def bonded_displacement(solution: Solution, source: str, problem: CoatedContact, k: int) -> Invariant:
+def bonded_displacement(solution: ContactSolution, source: str, problem: CoatedContact, k: int) -> Invariant:
     """u is the same on both sides of interface ``k``, extrapolated from three depths on each side.
 
     Bounded by the uncertainty of displacements on both sides, the change by the third depth, and below the
@@ -62,7 +62,9 @@ def bonded_displacement(solution: Solution, source: str, problem: CoatedContact,
     return decide(f"bonded displacements, interface {k}", source, law, gap, bound)
 
 
-def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, stencil: Stencil) -> Invariant:
+def hooke(
+    solution: ContactSolution, source: str, problem: CoatedContact, layer: int, stencil: Stencil
+) -> Invariant:
     """E eps_ij = (1 + nu) sigma_ij - nu sigma_kk delta_ij in ``layer``, strains by differences of u.
 
     Bounded by the error of the differences and of the evaluation of displacements, which differs between
@@ -89,7 +91,7 @@ def hooke(solution: Solution, source: str, problem: CoatedContact, layer: int, s
     return decide(f"Hooke's law, {name}", source, law, residual / problem.p_h, bound)
 
 
-def sphere(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
+def sphere(solution: ContactSolution, source: str, problem: CoatedContact) -> Invariant:
     """The surface follows the sphere: u_z + r^2/2R = delta in the contact, more outside.
 
     u_z is the sum of both bodies' where the ball is elastic. At right angles to sliding, where friction lifts
@@ -110,7 +112,7 @@ def sphere(solution: Solution, source: str, problem: CoatedContact) -> Invariant
     return decide("sphere", source, law, residual, bound)
 
 
-def reciprocity(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
+def reciprocity(solution: ContactSolution, source: str, problem: CoatedContact) -> Invariant:
     """Betti's reciprocity of normal and tangential load.
 
     On the surface u_z is odd in x by the tangential load alone, u_x by the normal load alone, and
@@ -130,7 +132,7 @@ def reciprocity(solution: Solution, source: str, problem: CoatedContact) -> Inva
 
 
 def displacement_bound(
-    solution: Solution,
+    solution: ContactSolution,
     problem: CoatedContact | PrescribedLoad,
     x: Array,
     y: Array,
@@ -158,7 +160,7 @@ def displacement_bound(
 
 
 def _under_uncertainty(
-    solution: Solution, problem: CoatedContact | PrescribedLoad, x: Array, y: Array, reach: float
+    solution: ContactSolution, problem: CoatedContact | PrescribedLoad, x: Array, y: Array, reach: float
 ) -> Array:
     """Displacement under U_p [m] of the part of the contact within ``reach`` of its radius."""
     a = solution.contact_radius
@@ -177,6 +179,6 @@ def _under_uncertainty(
     return 4 / (np.pi * E_star) * deflection
 
 
-def _line(solution: Solution, problem: CoatedContact, k: int) -> tuple[Array, Array, Array]:
+def _line(solution: ContactSolution, problem: CoatedContact, k: int) -> tuple[Array, Array, Array]:
     r = solution.contact_radius * RADII
     return r * np.cos(ANGLE), r * np.sin(ANGLE), np.full(r.shape, problem.interfaces[k - 1])

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import Solution
+from verification.problem.coated_contact import ContactSolution
 
 INNER = 0.95  # of a; out to here the uncertainty of the pressure is integrated
 # LAST: an error of order 3/2 on patches sqrt(2) coarser, 1/(2^(3/4) - 1). BEFORE guards against a last change
@@ -19,7 +19,9 @@ INNER = 0.95  # of a; out to here the uncertainty of the pressure is integrated
 LAST, BEFORE = 1.5, 0.5
 
 
-def followed(solution: Solution, value: Callable[[Any], Array], before: float = BEFORE) -> Array | None:
+def followed(
+    solution: ContactSolution, value: Callable[[Any], Array], before: float = BEFORE
+) -> Array | None:
     """Uncertainty of ``value(solution)`` from what it is for the coarser companions; None without any.
 
     before : of the change before the last one, that counts where the last is small by chance.

@@ -6,7 +6,7 @@ from verification.judging.invariant_verdict import Invariant, decide, layer_name
 from verification.judging.invariants.central_differences import Stencil
 from verification.judging.invariants.companion_uncertainty import INNER, followed
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.gauss_legendre import gauss_legendre
 from verification.problem.point_answers import Points
 
@@ -18,7 +18,7 @@ ANGLE = 0.35
 PART_OF_REACH = 1 / 32
 
 
-def load_balance(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
+def load_balance(solution: ContactSolution, source: str, problem: CoatedContact) -> Invariant:
     """Load balance: int p dA = W, out to 1.1 a.
 
     Bounded by the integral of the pressure's uncertainty, near the edge by the change over coarser companions
@@ -36,7 +36,7 @@ def load_balance(solution: Solution, source: str, problem: CoatedContact) -> Inv
 
 
 def _load(
-    solution: Solution, problem: CoatedContact, n: int, reach: float = np.inf
+    solution: ContactSolution, problem: CoatedContact, n: int, reach: float = np.inf
 ) -> tuple[float, float | None]:
     """int p dA and, within ``reach`` of a, int U_p dA over W, None where none is stated.
 
@@ -56,7 +56,7 @@ def _load(
     return float((weight * p).sum()), None if U is None else float((weight * within * U).sum())
 
 
-def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
+def surface(solution: ContactSolution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
     """sigma_zz = -p, sigma_xz = -f p, sigma_yz = 0 in the contact; no traction outside it.
 
     On y = 0 and at ``ANGLE`` from it, at the same radii, where a circumferential traction shows too. Bounded
@@ -90,7 +90,7 @@ def surface(solution: Solution, source: str, problem: CoatedContact) -> tuple[In
     return tuple(decide(n, source, law, r, bound) for (n, law, r), bound in zip(laws, bounds, strict=True))
 
 
-def places_in(layer: int, solution: Solution, problem: CoatedContact) -> Stencil:
+def places_in(layer: int, solution: ContactSolution, problem: CoatedContact) -> Stencil:
     """Stencils under the contact, in the substrate also beside it, with steps that stay inside ``layer``."""
     a = solution.contact_radius
     top = (0.0, *problem.interfaces)[layer]
@@ -105,7 +105,7 @@ def places_in(layer: int, solution: Solution, problem: CoatedContact) -> Stencil
 
 
 def equilibrium(
-    solution: Solution, source: str, problem: CoatedContact, layer: int, stencil: Stencil
+    solution: ContactSolution, source: str, problem: CoatedContact, layer: int, stencil: Stencil
 ) -> Invariant:
     """sigma_ij,j = 0 inside ``layer``, as the force on a slab of the vertical step's height.
 

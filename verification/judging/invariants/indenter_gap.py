@@ -4,7 +4,7 @@ import numpy as np
 
 from verification.judging.invariant_verdict import Invariant, decide
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.gauss_legendre import gauss_legendre
 from verification.problem.indenter_shape import height_of
 from verification.problem.point_answers import Points
@@ -16,7 +16,7 @@ TURNS = np.pi * np.array([0.03, 0.21, 0.47, 0.68, 0.93])
 CLEAR = 0.2  # of the contact radius around a point where the contact neither begins nor ends
 
 
-def gap(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
+def gap(solution: ContactSolution, source: str, problem: CoatedContact) -> Invariant:
     """The surface follows the indenter: u_z + height = approach in the contact, no less outside.
 
     Away from the edge, without the part of u_z that sliding adds, which is odd in x and left out of the gap.
@@ -49,7 +49,7 @@ def gap(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
     return decide("indenter", source, law, residual, bound)
 
 
-def load_balance(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
+def load_balance(solution: ContactSolution, source: str, problem: CoatedContact) -> Invariant:
     """Load balance: int p dA = W, by rings around the origin; bounded by the change by a coarser quadrature.
 
     The pressure falls to zero like a square root at an edge that crosses the rings.
@@ -59,7 +59,7 @@ def load_balance(solution: Solution, source: str, problem: CoatedContact) -> Inv
     return decide("load balance", source, "int p dA = W, over W", fine - 1, bound)
 
 
-def _load(solution: Solution, problem: CoatedContact, finer: int) -> float:
+def _load(solution: ContactSolution, problem: CoatedContact, finer: int) -> float:
     s, w = gauss_legendre(finer * RINGS)
     r = WIDEST * solution.contact_radius * (s + 1) / 2
     theta = 2 * np.pi * (np.arange(finer * ANGLES) + 0.3) / (finer * ANGLES)

@@ -7,7 +7,7 @@ import numpy as np
 
 from verification.judging.invariant_verdict import Invariant, decide
 from verification.problem.array_types import FloatArray
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.sources.references.patch_displacement import surface_coefficient
 from verification.sources.references.solids_in_contact import solids_of
 
@@ -26,7 +26,7 @@ def coefficient_error(problem: CoatedContact, side: float, patches: int = 33) ->
     return float(np.abs(np.array([K[place] for place in places]) - exact).max() / exact[0])
 
 
-def influence_coefficients(solution: Solution, source: str, problem: CoatedContact) -> Invariant:
+def influence_coefficients(solution: ContactSolution, source: str, problem: CoatedContact) -> Invariant:
     """The coefficients in use, of patches and of their parts at the edge, at near and far offsets.
 
     ``surface_coefficients`` is called as the solution calls it: on its grid, for both bodies. The quadrature

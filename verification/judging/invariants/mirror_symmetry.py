@@ -4,7 +4,7 @@ import numpy as np
 
 from verification.judging.invariant_verdict import Invariant, decide
 from verification.problem.array_types import Array
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.point_answers import Points
 
 RADII = np.array([0.3, 0.7])
@@ -13,7 +13,7 @@ TURNS = 2 * np.pi * (np.arange(8) + 0.5) / 8
 MIRROR = ((3 - np.arange(8)) % 8, 7 - np.arange(8))
 
 
-def symmetry(solution: Solution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
+def symmetry(solution: ContactSolution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
     """Mirror images, and round the axis A plus, with friction alone, one harmonic:
 
         rr, tt, zz, rz = A + B cos(theta),   rt, tz = C sin(theta),   B = C = 0 without friction
@@ -66,7 +66,7 @@ def _beyond_harmonics(s: Array, u: Array, *, friction: bool) -> tuple[Array, Arr
     return s - fitted, bound
 
 
-def _depths(solution: Solution, problem: CoatedContact) -> list[tuple[float, int]]:
+def _depths(solution: ContactSolution, problem: CoatedContact) -> list[tuple[float, int]]:
     """A quarter of a radius down, in whichever layer that is, and half a radius into the substrate."""
     a, z = solution.contact_radius, problem.interfaces
     shallow = 0.25 * a

@@ -17,7 +17,7 @@ from verification.judging.invariant_verdict import Invariant, decide, failed
 from verification.judging.invariants.bonded_deformation import displacement_bound
 from verification.judging.invariants.thickness_limits import thick_shift, thin_shift
 from verification.problem.array_types import Array, Ball, Coatings
-from verification.problem.coated_contact import CoatedContact, PrescribedLoad, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution, PrescribedLoad
 from verification.problem.either_body import on_body
 from verification.problem.gauss_legendre import gauss_legendre
 from verification.problem.point_answers import BALL, FLAT, Points
@@ -25,7 +25,7 @@ from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.sources.references.hertz import Hertz
 from verification.sources.source_registry import METHODS, SOURCES
 
-Solve = Callable[[CoatedContact | PrescribedLoad], Solution]
+Solve = Callable[[CoatedContact | PrescribedLoad], ContactSolution]
 Law = Callable[[], Invariant]
 
 # h/a_h, so near to the limit that the remaining effect of the coating is bounded below the caps.
@@ -41,7 +41,7 @@ PLACES = ((0.0, 0.45), (0.6, 0.3), (-0.6, 1.7), (1.3, 0.3))  # x, z over a_h
 
 
 def resolved(
-    problem: CoatedContact, available: Mapping[str, Callable[..., Solution]]
+    problem: CoatedContact, available: Mapping[str, Callable[..., ContactSolution]]
 ) -> tuple[Invariant, ...]:
     """Scaling, equal moduli, reciprocity, the limits of the coating or of the ball, of each available method.
 
@@ -62,15 +62,17 @@ def resolved(
 
 
 def _solved(
-    solve: Callable[..., Solution], numerics: Mapping[str, Any], problem: CoatedContact | PrescribedLoad
-) -> Solution:
+    solve: Callable[..., ContactSolution],
+    numerics: Mapping[str, Any],
+    problem: CoatedContact | PrescribedLoad,
+) -> ContactSolution:
     return solve(problem, numerics)
 
 
 def _laws(solve: Solve, finer: Solve, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
-    base: list[Solution] = []
+    base: list[ContactSolution] = []
 
-    def once(given: CoatedContact | PrescribedLoad) -> Solution:
+    def once(given: CoatedContact | PrescribedLoad) -> ContactSolution:
         if not base:
             base.append(finer(given))
         return base[0]
@@ -236,12 +238,12 @@ def _reciprocity(base: Solve, solve: Solve, source: str, problem: CoatedContact)
     return decide("reciprocity", source, law, gap, bound + abs(gap - coarser))
 
 
-def _surface_displacement(solution: Solution, y: Array) -> Array:
+def _surface_displacement(solution: ContactSolution, y: Array) -> Array:
     return solution.displacement(np.zeros_like(y), y, np.zeros_like(y))[2]
 
 
 def _dimensionless(
-    solution: Solution, problem: CoatedContact, bodies: tuple[str, ...] = ()
+    solution: ContactSolution, problem: CoatedContact, bodies: tuple[str, ...] = ()
 ) -> tuple[Array, Array]:
     """a/a_h, p0/p_h, approach/delta_h, the stresses over p_h at ``PLACES`` of ``bodies``, the uncertainties.
 

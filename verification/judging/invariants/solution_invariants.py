@@ -12,7 +12,7 @@ from verification.judging.invariants import (
     influence_error,
     mirror_symmetry,
 )
-from verification.problem.coated_contact import CoatedContact, Solution
+from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.either_body import on_body
 from verification.problem.line_profile import ON_BALL
 from verification.problem.point_answers import BALL, NotClaimed, Points
@@ -20,7 +20,7 @@ from verification.problem.point_answers import BALL, NotClaimed, Points
 Law = Callable[[], Invariant | tuple[Invariant, ...]]
 
 
-def check(solution: Solution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
+def check(solution: ContactSolution, source: str, problem: CoatedContact) -> tuple[Invariant, ...]:
     """Balance, tractions, equilibrium, bonds, Hooke's law and symmetry of ``solution`` by ``source``.
 
     The names of those of an elastic ball begin with "ball, ". One that raises an exception is NO_RESULT with
@@ -40,7 +40,7 @@ def check(solution: Solution, source: str, problem: CoatedContact) -> tuple[Inva
     return tuple(found)
 
 
-def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
+def _laws(solution: ContactSolution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
     subject = (solution, source, problem)
     if problem.indenter is not None:
         yield from _of_shape(solution, source, problem)
@@ -55,7 +55,7 @@ def _laws(solution: Solution, source: str, problem: CoatedContact) -> Iterator[t
         yield from ((f"{ON_BALL}{name}", law) for name, law in _of_body(*of_ball))
 
 
-def _of_shape(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
+def _of_shape(solution: ContactSolution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
     """Invariants under an indenter that is no sphere, where no angle is like another."""
     subject = (solution, source, problem)
     yield "load balance", partial(indenter_gap.load_balance, *subject)
@@ -70,7 +70,9 @@ def _of_shape(solution: Solution, source: str, problem: CoatedContact) -> Iterat
         yield from ((f"{ON_BALL}{name}", law) for name, law in _of_shaped_body(*of_ball))
 
 
-def _of_shaped_body(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
+def _of_shaped_body(
+    solution: ContactSolution, source: str, problem: CoatedContact
+) -> Iterator[tuple[str, Law]]:
     """Invariants of the fields of one body below an indenter that is no sphere."""
     subject = (solution, source, problem)
     for k in range(1, len(problem.coatings) + 1):
@@ -81,7 +83,7 @@ def _of_shaped_body(solution: Solution, source: str, problem: CoatedContact) -> 
         yield f"Hooke's law, layer {layer}", partial(bonded_deformation.hooke, *subject, layer, stencil)
 
 
-def _of_body(solution: Solution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
+def _of_body(solution: ContactSolution, source: str, problem: CoatedContact) -> Iterator[tuple[str, Law]]:
     """Invariants of the fields of one body, which is the flat of ``problem``."""
     subject = (solution, source, problem)
     yield "surface tractions", partial(force_balance.surface, *subject)
