@@ -212,7 +212,8 @@ class Solution:
             shift = self._uncertain_reach
             widened = (shape.widened(s).pressure(x, y) for s in (-shift, shift))
             moved = np.max([np.abs(q - p) for q in widened], axis=0)
-            U = self._of_patch_size(points, "pressure") + other
+            at_surface = PatchPoints(x, y, body=points.body, frame=points.frame)
+            U = self._of_patch_size(at_surface, "pressure") + other
             return PatchAnswer(p, U + np.where(at_edge(points), 0.0, moved))
         changed = interpolated(self.nodes, self._refinement, x, y, order=1)
         least = other + numbers.BY_PATCHES[1] * self.peak_pressure

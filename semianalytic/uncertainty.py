@@ -4,7 +4,7 @@
 
 with e1 and e2 the changes on refining the patches the last time and the time before, r the last refinement,
 P the order of the method and p the one observed. The second term stands for e1 where that is small by chance.
-Changes of a field cross zero where its error does not: e1 and e2 of a field are the largest ones within
+Changes of a field cross zero where its error does not: its e1 and e2 are the largest ones within
 ``NEIGHBOURHOOD`` times the distance to the contact edge, at the same share of the way to it.
 
 P. J. Roache, J. Fluids Eng. 116 (1994) 405-413; ASME V&V 20-2009, section 2; limits of p: L. Eca and
@@ -71,7 +71,7 @@ class ChangeTable:
     ) -> "ChangeTable":
         """For depths from ``top`` to ``bottom`` [m] below a smooth edge; levels : the finest first.
 
-        turning : whether a field depends on the direction under a round contact, as it does with friction.
+        turning : whether friction makes a field depend on the direction under a round contact.
         """
         shape = levels[0].shape
         assert shape is not None
@@ -83,9 +83,10 @@ class ChangeTable:
         below = np.concatenate([[0.0], d * 2.0 ** np.arange(np.ceil(np.log2(numbers.DEEPEST * a / d)))])
         ends = [top, bottom] if np.isfinite(bottom) else [top, max(2 * top, below[-1])]
         depths = np.unique([*ends, *below[(below > ends[0]) & (below < ends[1])]])
-        angles = np.pi / 4 * np.arange(8)
-        if shape.round:
-            angles = angles[: 5 if turning else 1 : 2]
+        even = not (turning or shape.twin or np.any(np.array(shape.harmonics) % 2))
+        angles = np.pi / 4 * np.arange(8)  # of one of the parts that are mirror images of each other
+        if min(shape.harmonics) >= 0:
+            angles = angles[: (1 if even else 5) : 2] if shape.round else angles[: 3 if even else 5]
         s, angle, z = np.meshgrid(shares, angles, depths, indexing="ij")
         x, y = shape.on_ray(s.ravel(), angle.ravel())
         found = sampled(x, y, z.ravel())
@@ -104,8 +105,9 @@ class ChangeTable:
     def __call__(self, share: Array, z: Array, components: int) -> Array:
         """U of each of the ``components`` at points, (components, n)."""
         places = np.stack([np.clip(share, *self.shares[[0, -1]]), np.clip(z, *self.depths[[0, -1]])], axis=-1)
-        grid = (self.shares, self.depths)
-        U = np.stack([RegularGridInterpolator(grid, one)(places) for one in self.values])
+        U = np.stack(
+            [RegularGridInterpolator((self.shares, self.depths), one)(places) for one in self.values]
+        )
         return U[list(TURNING[components])]
 
 

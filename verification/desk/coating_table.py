@@ -34,7 +34,8 @@ MOST_ROWS = 1000
 _HEAD = re.compile(r"(ball|substrate|coating ?\d*|name|load|friction)(?: (.*?))?(?: ?[\[(](.*)[\])])?")
 _NUMBERS = {"radius": "", "diameter": "d = ", "thickness": "", "E": "", "nu": ""}  # that come first, in order
 _STATED = ("strength", "residual stress", "yield strength", "adhesion", "hardness", "expansion")
-HUES = dict(zip(MODES, ("#0072B2", "#D55E00", "#009E73", "#CC79A7"), strict=True))
+FAILS = tuple(dict.fromkeys(does for does, _, _ in MODES.values()))
+HUES = dict(zip(FAILS, ("#0072B2", "#D55E00", "#009E73", "#CC79A7"), strict=True))
 HEADS = ("name", "stack", "p0 [MPa]", "a [um]", "sigma_1 coatings [MPa]", "von Mises [MPa]", "shear [MPa]")
 VERDICT = ("governing", "used", "safety factor", "message")
 
@@ -195,15 +196,18 @@ def table_page(rows: Sequence[CoatingRow], cases: Sequence[Case], title: str) ->
 
 def _bars(rows: Sequence[CoatingRow]) -> Markup:
     with mpl.rc_context({"font.size": 8}):
-        figure = Figure(figsize=(7.5, 0.9 + 0.16 * len(MODES) * len(rows)), layout="constrained")
+        figure = Figure(figsize=(7.5, 0.9 + 0.16 * len(FAILS) * len(rows)), layout="constrained")
         axes = figure.subplots()
-        for k, (quantity, (does, _, _)) in enumerate(MODES.items()):
+        for k, does in enumerate(FAILS):
             used = [
-                max((mode.utilisation for _, mode in one.modes if mode.quantity == quantity), default=0.0)
+                max(
+                    (mode.utilisation for _, mode in one.modes if MODES[mode.quantity][0] == does),
+                    default=0.0,
+                )
                 for one in rows
             ]
             at = np.arange(len(rows)) + 0.2 * (k - 1.5)
-            axes.barh(at, used, height=0.18, color=HUES[quantity], label=does)
+            axes.barh(at, used, height=0.18, color=HUES[does], label=does)
         axes.axvline(1.0, color="#c02a2a", linewidth=1.0, linestyle=(0, (4, 2)))
         axes.set_yticks(range(len(rows)), [one.name for one in rows])
         axes.invert_yaxis()

@@ -230,8 +230,8 @@ def test_a_stiff_ball_on_a_soft_incompressible_flat_is_solved_as_stated(tmp_path
     assert (done.returncode, done.stderr.count("rigid")) == (0, 0)
 
 
-def test_an_indenter_that_is_no_ball_is_refused_by_solve(tmp_path):
-    done = coatcheck("solve", "24_ellipse", cwd=tmp_path)
+def test_an_indenter_that_is_no_ellipsoid_is_refused_by_solve(tmp_path):
+    done = coatcheck("solve", "27_two_asperities", cwd=tmp_path)
     assert done.returncode == 2
     assert "indenter" in done.stderr
     assert not list(tmp_path.iterdir())

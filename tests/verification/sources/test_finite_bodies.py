@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import semianalytic
-from semianalytic.edge.edge_correction import STILL
+from semianalytic.numbers import STILL
 from verification.problem.coated_contact import CoatedContact, keywords
 from verification.sources.assumptions.contact_change import FLOOR
 from verification.sources.assumptions.finite_bodies import (
