@@ -35,13 +35,13 @@ from verification.commands.common.terminal_bar import progress_bar, require_gmsh
 from verification.credibility.model_error import ModelError, model_error
 from verification.desk.case_wording import case_text
 from verification.desk.contact_answer import (
-    HALF_AXES,
     AnswerDifference,
     ContactAnswer,
     agreement,
     answer,
     differences,
     summary,
+    symbol_and_unit,
     usual_seconds,
     with_slicing,
 )
@@ -64,7 +64,6 @@ from verification.desk.table_file import answer_rows, write_cells
 from verification.judging.outcome import Outcome
 from verification.problem.display_units import prefixed
 from verification.problem.point_answers import FLAT
-from verification.problem.quantity import QUANTITIES
 from verification.regression.run_exit_codes import EXIT
 from verification.running.case_result import describe, message_of
 from verification.running.json_records import encode
@@ -359,11 +358,10 @@ def _print(
     shown_in = (units.stress, f"± {units.stress}", *along, *between)
     table = _table(("largest", "place"), (*shown_in, *(f"{head} {units.stress}" for head in more)))
     for name, (value, stated) in first.numbers.items():
-        pressure = name not in HALF_AXES and QUANTITIES[name].unit == "Pa"
-        unit, scale = (units.stress, units.pascal) if pressure else (units.length, units.metre)
+        symbol, si = symbol_and_unit(name)
+        unit, scale = (units.stress, units.pascal) if si == "Pa" else (units.length, units.metre)
         cells = [value_text(value / scale, stated and stated / scale), spread_text(stated, scale)]
         ends = [f"{end / scale:.4g}" for end in spread.ends[name,]] if spread else []
-        symbol = HALF_AXES.get(name) or QUANTITIES[name].symbol
         numbers.add_row(symbol, unit, *cells, *checked((name,), scale), *ends)
     body = FLAT
     for at in first.extremes if every else worst_of_each(case, first.extremes):

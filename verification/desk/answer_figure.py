@@ -71,7 +71,7 @@ def _drawn(
     upper, lower = panels[:, 0]
     for beside in panels[:, 1]:  # room for the legends
         beside.set_visible(False)
-    a = answer.numbers["contact_radius"][0] / units.metre
+    a = answer.reach / units.metre
     _section(above, maps[0], seen[0], first_principal, "largest tension $σ_1$; white: 0", a, units)
     _section(above, maps[1], seen[1], von_mises, "von Mises stress", a, units)
     for course, colour, style in _cycle(_chosen(answer.courses, 0)):

@@ -13,7 +13,7 @@ from verification.desk.answer_stresses import Extreme, StressCourse, stresses
 from verification.desk.stack_text import units_of
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.point_answers import FLAT
-from verification.problem.quantity import SCALARS
+from verification.problem.quantity import QUANTITIES, SCALARS
 from verification.running.slicing import sliced
 from verification.sampling.along_axis import AlongAxis
 from verification.sources.source_registry import solvers
@@ -40,6 +40,11 @@ class ContactAnswer:
     extremes: tuple[Extreme, ...]
     courses: tuple[StressCourse, ...]
     strains: tuple[Extreme, ...] = ()
+
+    @property
+    def reach(self) -> float:
+        """Distance [m] of the contact edge from the axis along x."""
+        return self.numbers.get("half_axis_x", self.numbers["contact_radius"])[0]
 
 
 @dataclass(frozen=True)
@@ -91,6 +96,13 @@ def differences(first: ContactAnswer, second: ContactAnswer) -> tuple[AnswerDiff
     return tuple(
         AnswerDifference(key, b - a, abs(b - a) <= U_a + U_b) for key, ((a, U_a), (b, U_b)) in pairs.items()
     )
+
+
+def symbol_and_unit(name: str) -> tuple[str, str]:
+    """Symbol and SI unit of one of the ``numbers`` of an answer."""
+    if name in HALF_AXES:
+        return HALF_AXES[name], "m"
+    return QUANTITIES[name].symbol, QUANTITIES[name].unit
 
 
 def with_slicing(found: ContactAnswer, coarser: Sequence[ContactAnswer]) -> ContactAnswer:

@@ -10,9 +10,8 @@ from zipfile import BadZipFile, ZipFile
 
 from verification.cases.case_file import Case
 from verification.cases.toml_file import CaseError
-from verification.desk.contact_answer import ContactAnswer, with_name
+from verification.desk.contact_answer import ContactAnswer, symbol_and_unit, with_name
 from verification.desk.material_spread import Spread
-from verification.problem.quantity import QUANTITIES
 from verification.running.checked_files import write_atomically
 
 MOST_ROWS, MOST_COLUMNS, MOST_BYTES, MOST_UNPACKED = 100_000, 200, 5_000_000, 50_000_000
@@ -67,16 +66,20 @@ def _text(cell: Any) -> str:
 
 def answer_rows(case: Case, found: ContactAnswer, spread: Spread | None = None) -> list[list[Cell]]:
     """Every number of an answer in SI units, a row each, with the ends of its range."""
-    heads = ["quantity", "body", "place", "name", "value", "uncertainty", "unit", "x [m]", "z [m]"]
-    rows: list[list[Cell]] = [[*heads, *(("lowest", "highest") if spread else ())]]
+    axes = "xyz" if case.problem.elliptical else "xz"
+    heads = ["quantity", "body", "place", "name", "value", "uncertainty", "unit"]
+    places = [f"{axis} [m]" for axis in axes]
+    rows: list[list[Cell]] = [[*heads, *places, *(("lowest", "highest") if spread else ())]]
     for name, (value, stated) in found.numbers.items():
         ends = spread.ends[name,] if spread else ()
-        rows.append([name, None, "contact", None, value, stated, QUANTITIES[name].unit, None, None, *ends])
+        nowhere = [None] * len(axes)
+        rows.append([name, None, "contact", None, value, stated, symbol_and_unit(name)[1], *nowhere, *ends])
     for at in found.extremes:
         named = with_name(at.body, at.where, case.names)
         called = named.removeprefix(at.where).strip(" ()") or None
         ends = spread.ends[at.body, at.quantity, at.where] if spread else ()
-        numbers = [None if one != one else one for one in (at.value, at.uncertainty, at.x, at.z)]
+        given = (at.value, at.uncertainty, *(getattr(at, axis) for axis in axes))
+        numbers = [None if one != one else one for one in given]
         rows.append([at.quantity, at.body, at.where, called, *numbers[:2], "Pa", *numbers[2:], *ends])
     return rows
 

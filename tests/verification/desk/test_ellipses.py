@@ -1,5 +1,6 @@
 """Answers for bodies that are no balls: half axes, p0 and largest stresses of an ellipse, of both bodies."""
 
+import csv
 from pathlib import Path
 
 import numpy as np
@@ -113,11 +114,17 @@ def test_radii_of_the_other_body_belong_to_an_ellipsoid():
 
 def test_solve_shows_the_half_axes_and_places_in_both_planes(tmp_path, environment):
     environment(COLUMNS="100")
-    done = coatcheck("solve", "--radii", "8 mm, 3 mm", "--load", "20 N", "--substrate", STEEL, cwd=tmp_path)
-    assert done.returncode == 0
+    words = ("--radii", "8 mm, 3 mm", "--load", "20 N", "--substrate", STEEL, "--csv", "all.csv")
+    done = coatcheck("solve", *words, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
     rows = [line.split() for line in done.stdout.splitlines()]
     assert [row[0] for row in rows if row and row[0] in ("a_x", "a_y")] == ["a_x", "a_y"]
     (head,) = [row for row in rows if row[:2] == ["largest", "place"]]
     assert [word for word in head if word in "xyz"] == ["x", "y", "z"]
     assert "R_x = 8 mm, R_y = 3 mm" in done.stdout
     assert "y = 0 and x = 0" in done.stdout
+    with (tmp_path / "all.csv").open(encoding="utf-8") as file:
+        cells = {(row["quantity"], row["place"]): row for row in csv.DictReader(file)}
+    assert cells["half_axis_x", "contact"]["unit"] == "m"
+    edge = float(cells["half_axis_y", "contact"]["value"])
+    assert abs(float(cells["sigma_yy", "surface"]["y [m]"])) == pytest.approx(edge, rel=1e-3)
