@@ -143,7 +143,7 @@ class Body:
         """Thickness of every coating [m]."""
         return [h for _, _, h in self.coatings]
 
-    def layer_of(self, z: ArrayLike, layer: int | None) -> NDArray[np.intp]:
+    def layer_of(self, z: ArrayLike, layer: int | NDArray[np.intp] | None) -> NDArray[np.intp]:
         """Index of the layer at each depth; on an interface ``layer``, or the upper one if None.
 
         Raises ValueError for z < 0, and for a layer that does not contain z.
@@ -156,7 +156,7 @@ class Body:
         above = np.searchsorted(interfaces + slack, z)
         if layer is None:
             return above
-        if not 0 <= layer <= len(self.coatings):
+        if not np.all((np.asarray(layer) >= 0) & (np.asarray(layer) <= len(self.coatings))):
             raise ValueError(f"layer = {layer}; layers count from 0 to {len(self.coatings)}, the substrate")
         below = np.searchsorted(interfaces - slack, z, side="right")
         outside = (layer < above) | (layer > below)
@@ -165,7 +165,7 @@ class Body:
                 f"layer = {layer} does not hold z = {z[outside].flat[0]:g} m; the interfaces lie at "
                 f"{', '.join(f'{i:g}' for i in interfaces) or 'no depth'} m"
             )
-        return np.full(z.shape, layer)
+        return np.array(np.broadcast_to(layer, z.shape))
 
 
 def undeformed_gap(name: str, radius: float) -> Callable[[NDArray[Any]], NDArray[Any]]:

@@ -281,7 +281,7 @@ class Solution:
         share = shape.share(x, y).ravel()
         for number in np.unique(layer):
             here = layer.ravel() == number
-            table = self._table(quantity, points.body, int(number))
+            table = self._layer_tables(quantity, points.body)[number]
             U[:, here] = table(share[here], z.ravel()[here], len(U))
         return U.reshape((*axes, *x.shape)) + (0.0 if quantity == "displacement" else self._of_shape(x, y, z))
 
@@ -301,9 +301,7 @@ class Solution:
         at_edge = (1 + 2 * abs(self._body.friction)) * level.edge_error / (2 * d) * inside
         return np.asarray(level.misfit / (1 + distant) + at_edge / away**1.5)
 
-    def _of_all_levels(
-        self, quantity: str, body: str, x: Array, y: Array, z: Array, layer: int | None
-    ) -> Array:
+    def _of_all_levels(self, quantity: str, body: str, x: Array, y: Array, z: Array, layer: Any) -> Array:
         """A field of the three levels, at the same share of the way to their edge but for displacements."""
         solid, levels = self._body.named(body), self._levels
         if quantity == "stress":
@@ -312,19 +310,18 @@ class Solution:
             return fields.displacement(levels, solid, x, y, z)
         return np.stack([level.pressure(*level.matching(levels[0], x, y)) for level in levels])
 
-    def _table(self, quantity: str, body: str, layer: int) -> ChangeTable:
-        """The uncertainty of a field in one layer of a body, made at its first use."""
-        key = quantity, body, layer
+    def _layer_tables(self, quantity: str, body: str) -> list[ChangeTable]:
+        """The uncertainty of a field in the layers of a body, made at its first use."""
+        key = quantity, body
         if key not in self._tables:
             solid, sliding = self._body.named(body), bool(self._body.friction)
-            interfaces = [0.0, *np.cumsum(solid.thickness), np.inf]
-            top, bottom = (0.0, 0.0) if quantity == "pressure" else interfaces[layer : layer + 2]
-            of = partial(self._of_all_levels, quantity, body, layer=layer if quantity == "stress" else None)
-            self._tables[key] = ChangeTable.of(self._levels, of, top, bottom, sliding)
+            interfaces = [0.0, 0.0] if quantity == "pressure" else [0.0, *np.cumsum(solid.thickness), np.inf]
+            of = partial(self._of_all_levels, quantity, body)
+            self._tables[key] = ChangeTable.of(self._levels, of, interfaces, sliding)
         return self._tables[key]
 
     @cached_property
-    def _tables(self) -> dict[tuple[str, str, int], ChangeTable]:
+    def _tables(self) -> dict[tuple[str, str], list[ChangeTable]]:
         return {}
 
     def _uncertain_edge(

@@ -13,6 +13,7 @@ M. Hoekstra, J. Comput. Phys. 262 (2014) 104-130.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,7 +27,8 @@ from semianalytic.patches.grid import odd
 from semianalytic.patches.level import Indenter, Level
 
 Array = NDArray[np.floating]
-Sampled = Callable[[Array, Array, Array], Array]  # at x, y, z [m]: of all levels, (levels, components, n)
+# at x, y, z [m] in layers: of all levels, (levels, components, n)
+Sampled = Callable[[Array, Array, Array, NDArray[np.intp]], Array]
 
 # Of a tensor xx, xy, .. zz, a displacement and a pressure: components that turn into each other about the
 # normal have one uncertainty.
@@ -67,10 +69,11 @@ class ChangeTable:
 
     @classmethod
     def of(
-        cls, levels: Sequence[Level], sampled: Sampled, top: float, bottom: float, turning: bool
-    ) -> "ChangeTable":
-        """For depths from ``top`` to ``bottom`` [m] below a smooth edge; levels : the finest first.
+        cls, levels: Sequence[Level], sampled: Sampled, interfaces: Sequence[float], turning: bool
+    ) -> "list[ChangeTable]":
+        """Tables of the layers between ``interfaces`` [m], from 0, below a smooth edge.
 
+        levels : the finest first.  sampled : asked once, so that the layers share the rings around a point.
         turning : whether friction makes a field depend on the direction under a round contact.
         """
         shape = levels[0].shape
@@ -81,26 +84,33 @@ class ChangeTable:
             np.concatenate([[0.0, 1.0], 1 - beside, 1 + beside, 1 + beside[-1] * np.arange(2, 6)])
         )
         below = np.concatenate([[0.0], d * 2.0 ** np.arange(np.ceil(np.log2(numbers.DEEPEST * a / d)))])
-        ends = [top, bottom] if np.isfinite(bottom) else [top, max(2 * top, below[-1])]
-        depths = np.unique([*ends, *below[(below > ends[0]) & (below < ends[1])]])
+        depths = []
+        for top, bottom in pairwise(interfaces):
+            ends = [top, bottom] if np.isfinite(bottom) else [top, max(2 * top, below[-1])]
+            depths.append(np.unique([*ends, *below[(below > ends[0]) & (below < ends[1])]]))
         even = not (turning or shape.twin or np.any(np.array(shape.harmonics) % 2))
         angles = np.pi / 4 * np.arange(8)  # of one of the parts that are mirror images of each other
         if min(shape.harmonics) >= 0:
             angles = angles[: (1 if even else 5) : 2] if shape.round else angles[: 3 if even else 5]
-        s, angle, z = np.meshgrid(shares, angles, depths, indexing="ij")
+        layer = np.repeat(np.arange(len(depths)), [one.size for one in depths])
+        s, angle, z = np.meshgrid(shares, angles, np.concatenate(depths), indexing="ij")
         x, y = shape.on_ray(s.ravel(), angle.ravel())
-        found = sampled(x, y, z.ravel())
+        found = sampled(x, y, z.ravel(), np.broadcast_to(layer, s.shape).ravel())
         changes = np.abs(np.diff(found.reshape(len(levels), -1, *s.shape), axis=0)).max(axis=3)
         kinds = np.array(TURNING[changes.shape[1]])
         changes = np.stack([changes[:, kinds == k].max(axis=1) for k in range(kinds.max() + 1)])
-        # the largest within the neighbourhood of each node, (kinds, 2, nodes)
-        S, Z = (v.ravel() for v in np.meshgrid(a * (shares - 1), depths, indexing="ij"))
-        reach = np.maximum(numbers.NEIGHBOURHOOD * np.hypot(S, Z), numbers.LEAST_NEIGHBOURHOOD * d)
-        near = np.hypot(S[:, None] - S, Z[:, None] - Z) <= reach[:, None]
-        changes = changes.reshape(*changes.shape[:2], -1)
-        largest = np.stack([np.where(near, one[..., None, :], 0.0).max(axis=-1) for one in changes])
-        U = refined(largest[:, 0], largest[:, 1], levels[0].grid.n / levels[1].grid.n, order_of(levels[0]))
-        return cls(shares, depths, U.reshape(-1, shares.size, depths.size))
+        ratio, order = levels[0].grid.n / levels[1].grid.n, order_of(levels[0])
+        tables = []
+        for number, within in enumerate(depths):
+            # the largest within the neighbourhood of each node, (kinds, 2, nodes)
+            S, Z = (v.ravel() for v in np.meshgrid(a * (shares - 1), within, indexing="ij"))
+            reach = np.maximum(numbers.NEIGHBOURHOOD * np.hypot(S, Z), numbers.LEAST_NEIGHBOURHOOD * d)
+            near = np.hypot(S[:, None] - S, Z[:, None] - Z) <= reach[:, None]
+            here = changes[..., layer == number].reshape(*changes.shape[:2], -1)
+            largest = np.stack([np.where(near, one[..., None, :], 0.0).max(axis=-1) for one in here])
+            U = refined(largest[:, 0], largest[:, 1], ratio, order)
+            tables.append(cls(shares, within, U.reshape(-1, shares.size, within.size)))
+        return tables
 
     def __call__(self, share: Array, z: Array, components: int) -> Array:
         """U of each of the ``components`` at points, (components, n)."""

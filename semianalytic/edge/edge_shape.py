@@ -63,6 +63,13 @@ class Shape:
         """Whether f depends on the distance from the origin alone."""
         return self.harmonics == ROUND and self.axes[0] == self.axes[1] and self.centre == (0.0, 0.0)
 
+    @property
+    def mirrors(self) -> tuple[bool, bool]:
+        """Whether f is even in x and in y."""
+        n = np.array(self.harmonics)
+        in_y = bool(n.min() >= 0) and self.centre[1] == 0
+        return self.centre[0] == 0 and in_y and not np.any(n % 2), in_y
+
     @cached_property
     def radius(self) -> float:
         """Radius of the disc of the same area [m]; the contact radius of a round contact."""

@@ -14,7 +14,12 @@ Array = NDArray[np.floating]
 
 
 def stress(
-    levels: Sequence[Level], body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
+    levels: Sequence[Level],
+    body: Body,
+    x: ArrayLike,
+    y: ArrayLike,
+    z: ArrayLike,
+    layer: int | NDArray[np.intp] | None,
 ) -> Array:
     """Stress tensor [Pa] of each level at points [m], broadcast; shape (len(levels), 3, 3) + points.
 
@@ -66,7 +71,7 @@ def stress_of_uncertain_edge(
     """Change of each stress [Pa] when a smooth edge widens or narrows by ``shift`` [m], (3, 3, n)."""
     points = _points(body, x, y, z, layer)
     assert level.shape is not None
-    moved = [rings_of(level.shape.widened(s)) for s in (0.0, -shift, shift)]
+    moved = [rings_of(shape) for shape in (level.shape, *map(level.shape.widened, (-shift, shift)))]
     here, *others = subsurface.stress(*points, pressures=moved, body=body)
     return patch_field.tensor(np.max([np.abs(other - here) for other in others], axis=0))
 
@@ -86,7 +91,7 @@ def displacement_plane(level: Level, body: Body, z: float) -> Array:
 
 
 def _points(
-    body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
+    body: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | NDArray[np.intp] | None
 ) -> tuple[Array, Array, Array, NDArray[np.intp]]:
     """The points one after the other, with their layers."""
     x, y, z, where = np.broadcast_arrays(

@@ -31,6 +31,9 @@ from semianalytic.stresses.ring_quadrature import from_gap, gauss_legendre, pane
 
 Array = NDArray[np.floating]
 
+# Signs of 1, cos psi, sin psi, .. cos 3 psi, sin 3 psi under x -> -x, psi -> pi - psi; and under y -> -y.
+MIRRORED = np.array([[1.0, -1, 1, 1, -1, -1, 1], [1, 1, -1, 1, -1, 1, -1]])
+
 
 @dataclass(frozen=True, eq=False)
 class Rings:
@@ -154,11 +157,20 @@ class SmoothContour:
         return self.shape.pressure(x, y)
 
     def rings(self, x: Array, y: Array, scale: Array) -> Rings:
-        """Rings of `RingPressure`; the last ones are kept, for the other side of an interface."""
-        return _around_contour(self, *(v.tobytes() for v in (x, y, scale)))
+        """Rings of `Disc`, one set for mirror images; the last are kept, for the next layer or field."""
+        mirrors = self.shape.mirrors
+        folded = [np.abs(v) if mirror else v for v, mirror in zip((x, y), mirrors, strict=True)]
+        feet, same = np.unique(np.stack(folded), axis=1, return_inverse=True)
+        same, least = same.ravel(), np.full(feet.shape[1], np.inf)
+        np.minimum.at(least, same, scale)
+        rings = _copied(_around_contour(self, *(v.tobytes() for v in (*feet, least))), same)
+        for v, mirror, signs in zip((x, y), mirrors, MIRRORED, strict=True):
+            if mirror:
+                rings.harmonics[:, v[rings.foot] < 0] *= signs[:, None]
+        return rings
 
     def around(self, x: Array, y: Array, scale: Array) -> Rings:
-        """The same, anew."""
+        """Rings around points without regard to mirror images."""
         inside = self.shape.polynomials(x, y)[0] > 0
         marks = list(zip(self._touching(x, y), inside.tolist(), strict=True))
         foot, radius, weight = panels(marks, scale, self.radial)
@@ -219,9 +231,15 @@ class SmoothContour:
         sampled = t(everywhere, 2 * np.pi * np.arange(numbers.RING)[None] / numbers.RING)
         ring, low, high, curvature = _segments(sampled, t)
         t_low, t_high = t(ring, low), t(ring, high)
-        kept = t_high > 0
+        # around a point on an axis of symmetry one of each two arcs that are mirror images counts twice
+        on_axis = [mirror & (v == 0) for v, mirror in zip((x, y), self.shape.mirrors, strict=True)]
+        on_axis[0] &= ~on_axis[1]
+        middle, times = (low + high) / 2, np.ones(ring.size)
+        for on, side in zip(on_axis, (np.cos(middle), np.sin(middle)), strict=True):
+            times[on[ring]] = 1 + np.sign(np.round(side[on[ring]], 9))
+        kept = (t_high > 0) & (times > 0)
         ring, low, high, curvature = ring[kept], low[kept], high[kept], curvature[kept]
-        t_low, t_high = t_low[kept], t_high[kept]
+        t_low, t_high, times = t_low[kept], t_high[kept], times[kept]
         crossing = t_low < 0
         outer, cut = np.ones(ring.size), np.flatnonzero(crossing)
         at, begin, length = ring[cut], low[cut], (high - low)[cut]
@@ -235,8 +253,11 @@ class SmoothContour:
         cos, sin = np.cos(phi), np.sin(phi)
         p = self.shape.pressure(
             x[ring][:, None] + rho[ring][:, None] * cos, y[ring][:, None] + rho[ring][:, None] * sin
-        ) * (slope * w)
-        return np.array([np.bincount(ring, one, minlength=rho.size) for one in _sums(p, cos, sin)])
+        ) * (slope * w * times[:, None])
+        harmonics = np.array([np.bincount(ring, one, minlength=rho.size) for one in _sums(p, cos, sin)])
+        for on, signs in zip(on_axis, MIRRORED, strict=True):
+            harmonics[np.ix_(signs < 0, on)] = 0.0
+        return harmonics
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,8 +272,6 @@ class Twins:
 
     def rings(self, x: Array, y: Array, scale: Array) -> Rings:
         """Rings of `Disc`."""
-        # psi becomes pi - psi: 1, cos psi, sin psi, cos 2 psi, sin 2 psi, cos 3 psi, sin 3 psi
-        signs = np.array([1.0, -1, 1, 1, -1, -1, 1])
         here, there = self.one.rings(x, y, scale), self.one.rings(-x, y, scale)
         foot = np.concatenate([here.foot, there.foot])
         order = np.argsort(foot, kind="stable")
@@ -260,7 +279,7 @@ class Twins:
             foot[order],
             np.concatenate([here.radius, there.radius])[order],
             np.concatenate([here.weight, there.weight])[order],
-            np.concatenate([here.harmonics, signs[:, None] * there.harmonics], axis=1)[:, order],
+            np.concatenate([here.harmonics, MIRRORED[0][:, None] * there.harmonics], axis=1)[:, order],
         )
 
 
@@ -325,18 +344,24 @@ def _keys(t: Array) -> Array:
     return np.where(t < 1, (1.5 * t - 2.5) * t * t + 1, 0.5 * (1 - t) * outer * outer)
 
 
-def _turned(rings: Rings, same: NDArray[np.intp], angle: Array) -> Rings:
-    """The rings around points on the x axis as those around points ``same`` in the direction ``angle``."""
+def _copied(rings: Rings, same: NDArray[np.intp]) -> Rings:
+    """The rings around each of the points ``same``, one after the other."""
     begin = np.searchsorted(rings.foot, np.arange(same.max(initial=0) + 2))
     count = np.diff(begin)[same]
     foot = np.repeat(np.arange(same.size), count)
     at = np.arange(foot.size) + np.repeat(begin[same] - (np.cumsum(count) - count), count)
-    harmonics = rings.harmonics[:, at]
+    return Rings(foot, rings.radius[at], rings.weight[at], rings.harmonics[:, at])
+
+
+def _turned(rings: Rings, same: NDArray[np.intp], angle: Array) -> Rings:
+    """The rings around points on the x axis as those around points ``same`` in the direction ``angle``."""
+    rings = _copied(rings, same)
+    harmonics, foot = rings.harmonics, rings.foot
     for m in (1, 2, 3):
         even = harmonics[2 * m - 1].copy()
         harmonics[2 * m - 1] = even * np.cos(m * angle)[foot]
         harmonics[2 * m] = even * np.sin(m * angle)[foot]
-    return Rings(foot, rings.radius[at], rings.weight[at], harmonics)
+    return rings
 
 
 def _crossing(t: Callable[[Array], Array], t_low: Array, t_high: Array) -> Array:

@@ -1,5 +1,7 @@
 """Fields by rings: closed forms, the sum of point forces, Hankel integrals, field equations, continuity."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.polynomial import legendre
@@ -13,7 +15,7 @@ from semianalytic.coefficients.point_force import (
     half_space_displacement,
     half_space_stress,
 )
-from semianalytic.edge.edge_shape import EVEN, FULL, Shape
+from semianalytic.edge.edge_shape import ACROSS, EVEN, FULL, Shape
 from semianalytic.inputs import Body
 from semianalytic.stresses import subsurface
 from semianalytic.stresses.rings import Disc, SmoothContour, rings_of
@@ -144,6 +146,32 @@ def test_stress_below_a_contour_is_the_sum_of_its_point_forces(shape, atol):
     z = rng.uniform(0.5, 1, 40)  # where the sum has converged, to 1e-10
     found = stress(x, y, z, pressure=rings_of(shape))[SIX]
     np.testing.assert_allclose(found, by_point_forces(x, y, z, shape), rtol=0, atol=atol)
+
+
+@pytest.mark.parametrize("harmonics", [EVEN, ACROSS])
+def test_rings_of_mirror_images_are_those_without_regard_to_symmetry(harmonics):
+    rng = np.random.default_rng(3)
+    b = 0.05 * rng.standard_normal((4, len(harmonics)))
+    b[0, 0] = 1.0
+    contour = 0.01 * rng.standard_normal(b.shape[1]) / np.arange(1, b.shape[1] + 1) ** 2
+    shape = Shape((0.0, 0.0), (1.0, 2.7), harmonics, contour, b)
+    inner, outer = rng.uniform(-1.5, 1.5, (2, 20)), np.zeros(20)  # points anywhere and on both axes
+    x, y = (
+        np.concatenate([inner[0], inner[0], outer, [0, 0.9999, -1]]),
+        np.concatenate([2 * inner[1], outer, 2 * inner[1], np.zeros(3)]),
+    )
+
+    def sums(rings):
+        size = rings.weight / (rings.radius + 0.01)
+        return [np.bincount(rings.foot, size * one, x.size) for one in rings.harmonics]
+
+    class Any(Shape):
+        mirrors = False, False
+
+    free = replace(rings_of(shape), shape=Any(**vars(shape)))
+    scale = np.full(x.size, 0.01)
+    found, wanted = (sums(one.rings(x, y, scale)) for one in (rings_of(shape), free))
+    np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-12)
 
 
 @pytest.mark.parametrize("body", [BARE, COATED, THIN], ids=["bare", "two coatings", "thin"])

@@ -12,7 +12,7 @@ Splines on either side of it, smooth up to the edge, meet at the solution's own 
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -79,8 +79,8 @@ class DepthLine:
     """Stress at one depth in one layer as a function of x and f.
 
     knots : radii [m] of the samples.   fine, coarse : sigma_n and sigma_t over r, (4,) + shape of r, from all
-    the samples and from every other one.   bound : uncertainty at knots and -knots, (2, 4, knots), at the
-    contact edge on the surface that of values which move with it.
+    the samples and from every other one.   edge : on the surface, uncertainty of values which move with the
+    contact edge, there and opposite, (2, 4).
     """
 
     parts: Parts
@@ -89,17 +89,23 @@ class DepthLine:
     knots: Array
     fine: tuple[Curve, Curve]
     coarse: tuple[Curve, Curve]
-    bound: Array
+    edge: Array | None = None
 
     def __call__(self, x: Array, friction: float) -> Array:
         """xx, yy, zz, xz [Pa] at signed ``x`` [m], (4,) + shape of ``x``."""
         return _signed(self.fine, x, friction)
 
     def uncertainty(self, x: float, friction: float) -> Array:
-        """Uncertainty [Pa] at ``x``: that of the solution plus 1/8 of the error with half the samples."""
+        """Uncertainty [Pa] at ``x``, (4,): that of the solution plus 1/8 of the error with half the samples."""
+        if not self.parts.stated:
+            return np.full(4, np.nan)
         i = int(np.clip(np.searchsorted(self.knots, abs(x)), 1, self.knots.size - 1))
         at_knot = np.isclose(abs(x), self.knots, rtol=1e-12, atol=0)
-        beside = self.bound[:, :, at_knot if at_knot.any() else slice(i - 1, i + 1)].max(axis=2)
+        near = self.knots[at_knot if at_knot.any() else slice(i - 1, i + 1)]
+        bound = self.parts(near, self.z, self.layer)[2]
+        if self.edge is not None:
+            bound[:, :, near == self.parts.solution.contact_radius] = self.edge[..., None]
+        beside = bound.max(axis=2)
         stated = self.parts.uncertainty(beside if x >= 0 else beside[::-1], friction)
         fine, coarse = (_signed(curve, np.array([x]), friction) for curve in (self.fine, self.coarse))
         interpolation = np.abs(fine - coarse)[:, 0] / 8
@@ -169,7 +175,7 @@ def _depths(top: float, bottom: float, width: float) -> Array:
 def _planes(parts: Parts, knots: Array, depths: Array, layer: int) -> list[DepthLine]:
     """Planes at ``depths`` > 0, sampled at ``knots``, together: those around one point share its rings."""
     r, z = np.broadcast_arrays(knots, depths[:, None])
-    normal, tangential, bound = parts(r, z, layer)
+    normal, tangential, _ = replace(parts, stated=False)(r, z, layer)
 
     def curves(i: int, keep: NDArray[np.int_]) -> tuple[Curve, Curve]:
         at = knots[keep]
@@ -177,7 +183,7 @@ def _planes(parts: Parts, knots: Array, depths: Array, layer: int) -> list[Depth
 
     every, half = np.arange(knots.size), _every_other(knots.size)
     return [
-        DepthLine(parts, float(at), layer, knots, curves(i, every), curves(i, half), bound[:, :, i])
+        DepthLine(parts, float(at), layer, knots, curves(i, every), curves(i, half))
         for i, at in enumerate(depths)
     ]
 
@@ -192,11 +198,10 @@ def _surface(parts: Parts, a: float, h: float, reach: float) -> DepthLine:
     eta = np.linspace(0, np.arccosh(1 + reach / a), int(17 + more + 2 * reach / a))
     inside = theta.size
     knots = np.concatenate([a * np.sin(theta), a * np.cosh(eta[1:])])
-    around = around_edge(parts.solution)
-    normal, tangential, bound = parts(np.append(knots, around), 0.0, 0)
-    edge = slice(knots.size, None)
+    normal, tangential, bound = parts(around_edge(parts.solution), 0.0, 0)
     sides = np.stack([normal + g * tangential for g in (parts.friction, -parts.friction)])
-    bound[:, :, inside - 1] = edge_uncertainty(sides[:, :, edge], bound[:, :, edge], _change(parts))
+    edge = edge_uncertainty(sides, bound, _change(parts))
+    normal, tangential, _ = replace(parts, stated=False)(knots, 0.0, 0)
 
     def joined(values: Array, parity: Array, keep: Callable[[int], NDArray[np.int_]]) -> Curve:
         i, o = keep(inside), keep(eta.size)
@@ -212,7 +217,7 @@ def _surface(parts: Parts, a: float, h: float, reach: float) -> DepthLine:
     def curves(keep: Callable[[int], NDArray[np.int_]]) -> tuple[Curve, Curve]:
         return joined(normal, PARITY, keep), joined(tangential, -PARITY, keep)
 
-    return DepthLine(parts, 0.0, 0, knots, curves(np.arange), curves(_every_other), bound[:, :, : knots.size])
+    return DepthLine(parts, 0.0, 0, knots, curves(np.arange), curves(_every_other), edge)
 
 
 def _change(parts: Parts) -> Array | None:
