@@ -65,11 +65,14 @@ class Examiner:
         guest = GUESTS[method]
         if numbers_only:
             case = replace(case, claims=tuple(c for c in case.claims if c.line == "contact"))
+        # patches alone are asked for as the case states them
+        own = read_case(shipped_cases()[name]).numerics.get(method, {})
+        own = own if load == SPHERE and "edge_correction" in own else {}
         question = question_of(case, exam, guest, claims_of(case, guest), {})
         given = {"protocol": VERSION, "id": question.id}
         try:
             problem = problem_of(question)
-            solution = called(ADAPTERS[method].solve, problem, {})
+            solution = called(ADAPTERS[method].solve, problem, own)
             answer = GuestAnswer(**given, **plain(vars(values_of(solution, problem, question))))
         except Exception as error:
             answer = GuestAnswer(**given, error=str(error)[:500])
