@@ -32,7 +32,7 @@ from semianalytic.stresses.ring_quadrature import from_gap, gauss_legendre, pane
 Array = NDArray[np.floating]
 
 # Signs of 1, cos psi, sin psi, .. cos 3 psi, sin 3 psi under x -> -x, psi -> pi - psi; and under y -> -y.
-MIRRORED = np.array([[1.0, -1, 1, 1, -1, -1, 1], [1, 1, -1, 1, -1, 1, -1]])
+MIRRORED = np.array([[1, -1, 1, 1, -1, -1, 1], [1, 1, -1, 1, -1, 1, -1]])
 
 
 @dataclass(frozen=True, eq=False)

@@ -66,7 +66,7 @@ def traced(file: Path) -> dict[str, str]:
 
 
 def missing(executed: set[str]) -> Iterator[tuple[str, str]]:
-    """Place and first line of each statement in functions of the methods, none of whose lines was executed."""
+    """Place and first line of each statement in a function of the methods, no line of which was executed."""
     for path in sorted(path for method in METHODS for path in (ROOT / method).rglob("*.py")):
         text, name = path.read_text(encoding="utf-8"), path.relative_to(ROOT).as_posix()
         lines = text.splitlines()
