@@ -32,7 +32,7 @@ from semianalytic.stresses.ring_quadrature import from_gap, gauss_legendre, pane
 Array = NDArray[np.floating]
 
 # Signs of 1, cos psi, sin psi, .. cos 3 psi, sin 3 psi under x -> -x, psi -> pi - psi; and under y -> -y.
-MIRRORED = np.array([[1, -1, 1, 1, -1, -1, 1], [1, 1, -1, 1, -1, 1, -1]])
+MIRRORED = [[1, -1, 1, 1, -1, -1, 1], [1, 1, -1, 1, -1, 1, -1]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -164,7 +164,7 @@ class SmoothContour:
         same, least = same.ravel(), np.full(feet.shape[1], np.inf)
         np.minimum.at(least, same, scale)
         rings = _copied(_around_contour(self, *(v.tobytes() for v in (*feet, least))), same)
-        for v, mirror, signs in zip((x, y), mirrors, MIRRORED, strict=True):
+        for v, mirror, signs in zip((x, y), mirrors, np.array(MIRRORED), strict=True):
             if mirror:
                 rings.harmonics[:, v[rings.foot] < 0] *= signs[:, None]
         return rings
@@ -255,7 +255,7 @@ class SmoothContour:
             x[ring][:, None] + rho[ring][:, None] * cos, y[ring][:, None] + rho[ring][:, None] * sin
         ) * (slope * w * times[:, None])
         harmonics = np.array([np.bincount(ring, one, minlength=rho.size) for one in _sums(p, cos, sin)])
-        for on, signs in zip(on_axis, MIRRORED, strict=True):
+        for on, signs in zip(on_axis, np.array(MIRRORED), strict=True):
             harmonics[np.ix_(signs < 0, on)] = 0.0
         return harmonics
 
@@ -279,7 +279,9 @@ class Twins:
             foot[order],
             np.concatenate([here.radius, there.radius])[order],
             np.concatenate([here.weight, there.weight])[order],
-            np.concatenate([here.harmonics, MIRRORED[0][:, None] * there.harmonics], axis=1)[:, order],
+            np.concatenate([here.harmonics, np.array(MIRRORED[0])[:, None] * there.harmonics], axis=1)[
+                :, order
+            ],
         )
 
 
