@@ -181,7 +181,7 @@ TABLE, DEEPEST = 16, 8.0
 # Error of a field over the peak pressure: on rings; by patches, above 4 of them and below.
 # [test_subsurface]
 RINGS, BY_PATCHES = 3e-9, (5e-6, 5e-7)
-# Patches from the edge, within which the error of its radius is felt. [test_smooth_edge]
+# Patches from the edge, beyond which stresses change in proportion to its radius. [problems]
 NEAR_EDGE = 8.0
 # Fall of the uncertainty on refining twice that makes a larger grid worth its time; and of the ripple, or
 # of the change of the pressure, that shows that a grid is the first to resolve the edge. [problems]

@@ -183,13 +183,15 @@ class Solution:
         return fields.displacement_plane(self._level, self._body.named(body), z)
 
     def _displacement(self, points: Any, stated: bool) -> PatchAnswer:
-        """Displacement [m]; uncertain by the size of the patches, and as the approach by all else."""
+        """Displacement [m]; uncertain by the size of the patches, by the rings, and as the approach by all
+        else."""
         x, y, z, body = points.x, points.y, points.z, self._body.named(points.body)
         u, *_ = fields.displacement([self._level], body, x, y, z)
         if not stated:
             return PatchAnswer(u)
         # the deflection changes by no larger a share than the pressure by what its shape leaves out
-        left = self._other("approach") + self._level.misfit / self.peak_pressure * self.approach
+        shares = self._level.misfit / self.peak_pressure + numbers.RINGS
+        left = self._other("approach") + shares * abs(self.approach)
         return PatchAnswer(u, self._of_patch_size(points, "displacement") + left)
 
     def _pressure(self, points: Any, stated: bool) -> PatchAnswer:
@@ -257,8 +259,8 @@ class Solution:
             deep = np.asarray(z) >= 4 * self.diagnostics.patch_size
             return PatchAnswer(sigma, U + self._rim(x, y, z) + np.where(deep, *numbers.BY_PATCHES[::-1]) * p0)
         U += numbers.RINGS * p0
-        if self._level.shape is not None and not (moves := at_edge(points)).all():
-            U += np.where(moves, 0.0, self._uncertain_edge(solid, x, y, z, layer))
+        if self._level.shape is not None:
+            U += self._uncertain_edge(solid, points)
         return PatchAnswer(sigma, U)
 
     def _of_patch_size(self, points: Any, quantity: str) -> Array:
@@ -324,20 +326,21 @@ class Solution:
     def _tables(self) -> dict[tuple[str, str], list[ChangeTable]]:
         return {}
 
-    def _uncertain_edge(
-        self, solid: Body, x: ArrayLike, y: ArrayLike, z: ArrayLike, layer: int | None
-    ) -> Array:
-        """Change of the stress [Pa] by the uncertain radius, within ``NEAR_EDGE`` patches of the edge; (3, 3)
-        + points."""
-        shift = self._uncertain_reach
-        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) for v in (x, y, z)))
-        distance = np.hypot(self._to_edge(x, y), z)
-        near = distance < numbers.NEAR_EDGE * self.diagnostics.patch_size + shift
-        change = np.zeros((3, 3, *x.shape))
+    def _uncertain_edge(self, solid: Body, points: Any) -> Array:
+        """Change of the stress [Pa] by the uncertain radius, (3, 3) + points.
+
+        By a larger one at fixed places or, in the frame "edge", at places that move with it; at fixed places
+        within ``NEAR_EDGE`` patches of the edge, where it is not in proportion, by a smaller one too.
+        """
+        shift, moves = self._uncertain_reach, at_edge(points)
+        x, y, z, moves = np.broadcast_arrays(points.x, points.y, points.z, moves)
+        moved = partial(fields.stress_of_moved_edge, self._level, solid, layer=points.layer)
+        change = np.array(moved(shift, x, y, z, moves))
+        near = np.hypot(self._to_edge(x, y), z) < numbers.NEAR_EDGE * self.diagnostics.patch_size + shift
+        near &= ~moves
         if near.any():
-            change[..., near] = fields.stress_of_uncertain_edge(
-                self._level, solid, shift, x[near], y[near], z[near], layer
-            )
+            other = moved(-shift, x[near], y[near], z[near], moves[near])
+            change[..., near] = np.maximum(change[..., near], other)
         return change
 
     @cached_property

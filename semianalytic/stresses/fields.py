@@ -65,15 +65,29 @@ def _add(
             total += on_patches(*place, *points[2:], grid_x=level.nodes, pressure=pressure, body=body)
 
 
-def stress_of_uncertain_edge(
-    level: Level, body: Body, shift: float, x: Array, y: Array, z: Array, layer: int | None
+def stress_of_moved_edge(
+    level: Level,
+    body: Body,
+    shift: float,
+    x: Array,
+    y: Array,
+    z: Array,
+    moves: NDArray[np.bool_],
+    layer: int | None,
 ) -> Array:
-    """Change of each stress [Pa] when a smooth edge widens or narrows by ``shift`` [m], (3, 3, n)."""
-    points = _points(body, x, y, z, layer)
+    """How much each stress [Pa] changes when a smooth edge widens by ``shift`` [m], (3, 3) + points.
+
+    moves : at which points x and y move with the edge.
+    """
+    X, Y, Z, where = _points(body, x, y, z, layer)
     assert level.shape is not None
-    moved = [rings_of(shape) for shape in (level.shape, *map(level.shape.widened, (-shift, shift)))]
-    here, *others = subsurface.stress(*points, pressures=moved, body=body)
-    return patch_field.tensor(np.max([np.abs(other - here) for other in others], axis=0))
+    wider = level.shape.widened(shift)
+    moved = [
+        np.where(moves.ravel(), *pair) for pair in zip(wider.matching(level.shape, X, Y), (X, Y), strict=True)
+    ]
+    pressures, places = [rings_of(level.shape), rings_of(wider)], [(X, Y), (moved[0], moved[1])]
+    here, there = subsurface.stress(X, Y, Z, where, pressures=pressures, body=body, places=places)
+    return patch_field.tensor(np.abs(there - here).reshape(6, *np.shape(x)))
 
 
 def stress_plane(level: Level, body: Body, z: float, layer: int | None) -> Array:
