@@ -13,12 +13,9 @@ from fem_reference import element_numbers as chosen
 from fem_reference.elasticity.axisymmetric import Discretisation
 from fem_reference.meshing.location import LocatedPoints, Uncached
 
-# corners, middles and centre of the reference triangle: the hoop strain is worst on the axis itself
-_TRIANGLE = np.array([[0, 1, 0, 1 / 2, 1 / 2, 0, 1 / 3], [0, 0, 1, 0, 1 / 2, 1 / 2, 1 / 3]])
-# Moved this far towards the centre, those of triangles in depth: none lies on a plane with a formula of its
-# own, nor at a vertex of a plane, where two cells have two stresses.
-_INWARDS = 1e-7
-_CELL = np.linspace(_INWARDS, 1 - _INWARDS, 7)
+# Those of triangles are moved towards the centre in depth: none lies on a plane with a formula of its own,
+# nor at a vertex of a plane, where two cells have two stresses.
+_CELL = np.linspace(chosen.SAME_PLACE, 1 - chosen.SAME_PLACE, 7)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,11 +39,12 @@ class ComparisonPoints(Uncached):
     def triangles(self) -> list[LocatedPoints]:
         """Seven points of every triangle of the first mesh, shape (7 * triangles,)."""
         d = self.meshes[0]
-        s1, s2 = _TRIANGLE
+        # corners, middles and centre: the hoop strain is worst on the axis itself
+        s1, s2 = np.array([[0, 1, 0, 1 / 2, 1 / 2, 0, 1 / 3], [0, 0, 1, 0, 1 / 2, 1 / 2, 1 / 3]])
         shape = np.stack([1 - s1 - s2, s1, s2])
         corners = d.mesh.points[:, d.triangulation.t]
         r, z = np.einsum("cp,dct->dpt", shape, corners)
-        z = z + _INWARDS * (corners[1].mean(axis=0) - z)
+        z = z + chosen.SAME_PLACE * (corners[1].mean(axis=0) - z)
         layer = np.broadcast_to(d.mesh.layer, r.shape)
         r, z = np.minimum((r, z), self._reach).reshape(2, -1)
         return self._on_each(r, z, layer.ravel())
@@ -72,7 +70,7 @@ class ComparisonPoints(Uncached):
         """
         mesh, triangulation = self.meshes[0].mesh, self.meshes[0].triangulation
         vertices = triangulation.t + mesh.layer * mesh.points.shape[1]  # those of each layer apart
-        worst = values.reshape(-1, len(_TRIANGLE.T), vertices.shape[1]).max(axis=1)
+        worst = values.reshape(-1, values.shape[-1] // vertices.shape[1], vertices.shape[1]).max(axis=1)
         largest = np.zeros((len(worst), (int(mesh.layer.max()) + 1) * mesh.points.shape[1]))
         for _ in range(chosen.RINGS):
             for corner in vertices:

@@ -72,15 +72,11 @@ def check_ball(ball: tuple[float, float, Sequence[tuple[float, float, float]]]) 
 def check_proportions(thicknesses: Sequence[float], unit: str, of: str = "") -> None:
     """Raise ValueError for coatings too thin or too thick to mesh beside a contact of radius 1 ``unit``."""
     for k, h in enumerate(thicknesses, start=1):
-        if not chosen.MIN_THICKNESS <= h <= chosen.MAX_THICKNESS:
-            what = (
-                "thin; leave it out"
-                if h < chosen.MIN_THICKNESS
-                else "thick; use its material for the substrate"
-            )
+        if not 1 / chosen.MAX_THICKNESS <= h <= chosen.MAX_THICKNESS:
+            what = "thin; leave it out" if h < 1 else "thick; use its material for the substrate"
             raise ValueError(
                 f"thickness of {of}coating {k} is {h:.3g} {unit}, too {what}, or keep it between "
-                f"{chosen.MIN_THICKNESS:g} and {chosen.MAX_THICKNESS:g} {unit}"
+                f"{1 / chosen.MAX_THICKNESS:g} and {chosen.MAX_THICKNESS:g} {unit}"
             )
 
 

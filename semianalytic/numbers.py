@@ -21,26 +21,24 @@ HANKEL_BIAS_OVER_K = (0.25, 0.0, -0.25, -0.25)
 # r over the scale, nearer than which a power series of J_m replaces the grid, its terms, and the radii
 # tabulated there: the rest is below 0.1^16. [test_hankel]
 NEAR_AXIS, NEAR_AXIS_TERMS, NEAR_AXIS_RADII = 0.1, 8, 60
-# Error of the quadrature over a patch, relative to the value at its centre; sets its order.
-# [test_influence]
-PATCH_DIGITS = 1e-11
 # Patches from the nearest singularity, beyond which differences average a patch. [test_influence]
 AVERAGED = 12.0
 # Points of the spline of the compliance: to rounding at any ratio of moduli. [test_frf]
 COMPLIANCE_SAMPLES = 2000
-# Of the compliance, below which the layers no longer reflect. [rounding]
+# Of the compliance, below which the layers no longer reflect; error of the quadrature over a patch, relative
+# to the value at its centre, which sets its order. [test_influence]
 NEGLIGIBLE = 1e-12
 
 # ----------------------------------------------------------------------------------------- patches
 # Patches a side of the coarsest grid that is solved. [problems]
 COARSEST = 33
-# Residual on a fixed contact set, over the first one, at which the set is updated, iterations after which
-# it is in any case, and updates after which it follows the signs of p and g: fewer let the set oscillate.
-# [bench]
+# Residual on a fixed contact set, over the first one, at which the set is updated, iterations after which it
+# is in any case, and updates after which it follows the signs of p and g: fewer let the set oscillate. After
+# as many iterations the residual is cut off at the edge. [bench]
 RESIDUAL_FALL, ITERATIONS_PER_SET, PREDICTED_UPDATES = 0.5, 3, 12
-# Iterations after which the residual is cut off at the edge, and after which there is no preconditioner, as
-# Polonsky and Keer: for contacts that it misleads. [bench]
-EXTENDED_ITERATIONS, PRECONDITIONED_ITERATIONS = 10, 50
+# Iterations after which there is no preconditioner, as Polonsky and Keer: for contacts that it misleads.
+# [bench]
+PRECONDITIONED_ITERATIONS = 50
 # Patches over which the residual is extended beyond the contact, and share of contact in the mean below
 # which it fades; cut off at the edge it would take twice the iterations. [bench]
 EXTENSION, FADED_RESIDUAL = 2.0, 0.1
@@ -48,8 +46,6 @@ EXTENSION, FADED_RESIDUAL = 2.0, 0.1
 SHARED = 3 * 2**17
 # Of the patches a side, over those of the grids of a refinement study; of patches alone. [problems]
 REFINED, HALVED = (2.0, 1.4, 1.0), (4.0, 2.0, 1.0)
-# Of grids that only give the start: iterations on the next one are about as many as by halves. [bench]
-STRIDE = 2.8
 # Steps to the lowest point between the patches, off by 1e-4 of the height over a patch. [test_nested]
 HALVINGS = 6
 # Of the approach, by which patches of twice the side may miss the deflection beside a contact.
@@ -71,12 +67,12 @@ LONG = 8.0
 # Patches across a contact, by which the rough grid tells its width, and fewer than which are no answer.
 # [test_long_contacts]
 NARROW_WIDTH, RESOLVED_WIDTH = 4, 12
-# Patches a side of the next grid over the last, where the accuracy asked is not met, and the box that tests
-# the domain over the box in use. [problems]
+# Patches a side of the next grid over the last, where the accuracy asked is not met, half of those of grids
+# that only give the start, and the box that tests the domain over the box in use. [problems]
 FINER = 1.4
-# Patches a side of the last for ``accuracy``, where refining no longer helps, and of contacts that are no
-# disc or at neighbouring loads: time and memory. [bench]
-LARGEST_GRID, LARGE_GRID, BESIDE_GRID = 2801, 1401, 513
+# Patches a side of the last for ``accuracy``, half of them where refining no longer helps, and of contacts
+# that are no disc or at neighbouring loads: time and memory. [bench]
+LARGEST_GRID, BESIDE_GRID = 2801, 513
 # Steps of the load to the contacts that give the stiffness, the share of their extrapolation's change that
 # is its uncertainty (0.31 was needed), times as many iterations, and the relative error of an approach that
 # two grids may share. [problems]
@@ -89,14 +85,14 @@ STEPS, OF_STEP, FURTHER, SHARED_NOISE = (0.05, 0.1), 0.5, 8, 2e-7
 ROUNDS, HELD_ROUNDS, STILL = 10, 2, 2e-5
 # Share of the first step of a fit that is taken: rounds would oscillate. [test_smooth_edge]
 DAMPING = 0.8
-# Patches by which the pressures near a smooth edge may miss its shape; in the first rounds.
-# [test_smooth_edge]
+# Patches by which the pressures near a smooth edge may miss its shape, and the edge pass the centre of a
+# patch; in the first rounds. [test_smooth_edge]
 MISFIT, COARSE_MISFIT = 0.3, 2.0
 # Of the load, the most that patches may miss; of the peak, the most that the shape may miss inside:
 # ellipses 3e-5, a kink of the indenter's slope 0.1. [test_smooth_edge]
 LOST, INNER_MISFIT = 0.2, 3e-3
-# 1 - (r/a)^2, beyond which a difference of patches and shape is the shape's own, not of the edge.
-# [problems]
+# 1 - (r/a)^2, beyond which a difference of patches and shape is the shape's own, not of the edge; as far
+# outside the contour is an ellipse. [problems]
 FAR_INSIDE = 0.6
 # Of the peak, that the patches differ from the shape inside before the difference counts.
 # [test_smooth_edge]
@@ -111,19 +107,25 @@ USUAL_RADIUS, RESOLVED_TERMS = 57, 1.75
 # e over h/a: 4 is best for one coating, 8 for a stack; and e beyond which a layer does not matter.
 # [problems]
 LAYER, THICK = 7.0, 100.0
+# Harmonics of contacts that are round; even in x and in y, the last for the ends of a long ellipse on a stiff
+# film; even in y, beside its mirror image; even in y. [test_long_contacts]
+ROUND, EVEN, HALF = (0,), (0, 2, 4, 6, 8, 10, 12), (0, 1, 2, 3, 4, 5, 6, 7, 8)
+ACROSS = (0, 1, 2, 3, 4, 6, 8, 9, 10, 12)
 # The highest harmonic of a shape fitted to patches alone, or patches in a for each. [test_long_contacts]
 LOW_HARMONICS, PATCHES_A_WAVE = 6, 4.0
 # Patches in a, below which the edge is not resolved, and below which the next grid tries anew. [problems]
 NARROW_EDGE, FEW_PATCHES = 5, 32
-# t over which a pressure fitted near the edge alone fades to the inside; t beyond which the contour is an
-# ellipse; largest change of an axis in a fit. [test_smooth_edge]
-FADED_INSIDE, FAR_OUTSIDE, WIDEST = (0.15, 0.4), -0.6, 0.3
-# Patches from the edge, nearer than which the column of the edge, infinite there, is constant, and by which
-# the edge may pass the centre of a patch. [problems]
-BLUNT, SLACK = 0.7, 0.3
+# t over which a pressure fitted near the edge alone fades to the inside; largest change of an axis in a fit.
+# [test_smooth_edge]
+FADED_INSIDE, WIDEST = (0.15, 0.4), 0.3
+# Patches from the edge, nearer than which the column of the edge, infinite there, is constant. [problems]
+BLUNT = 0.7
 # Of a patch a side, odd: the approach errs by 4e-8, 1e-8, 1e-9 with 15, 25, 41, the pressure next to the
 # edge by a fifth of what it did with 15. [problems]
 PARTS = 25
+# Points a side of a patch between which f^2 is interpolated: its error is below that of the parts.
+# [test_smooth_edge]
+SQUARE_NODES = 5
 # Depth in contact to which patches are integrated by parts, and patches within which the deflection is that
 # of the parts, beyond which it is that of their moments. [test_smooth_edge]
 PARTED, NEAR_PARTS = 3, 4

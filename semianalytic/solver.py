@@ -137,9 +137,8 @@ def _refined(
         last = levels[-1].grid
         n = odd(numbers.FINER * last.n)
         reached.append(estimate.relative_to(levels[-1].scalars))
-        largest = (
-            numbers.LARGE_GRID if uncertainty.is_stalled(accuracy, reached, levels) else numbers.LARGEST_GRID
-        )
+        stalled = uncertainty.is_stalled(accuracy, reached, levels)
+        largest = numbers.LARGEST_GRID // 2 + 1 if stalled else numbers.LARGEST_GRID
         if n > (largest if indenter.round else most):
             break
         grid = replace(last, n=n, d=2 * last.half_width / n)

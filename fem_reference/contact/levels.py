@@ -42,7 +42,7 @@ def solve_levels(
     order, size : of the finest.  curvature : of the gap, as in `contact.undeformed_gap`
     Raises ElementsNotConverged when the load is not reached on one of the meshes.
     """
-    first = replace(Grading.of(chosen.FIRST_SIZE), rows=chosen.FIRST_ROWS)
+    first = replace(Grading.of(chosen.LARGEST_SIZE), rows=1.0)
     final, companion, coarsest = family(size)
     levels = [
         MeshLevel("first", first, chosen.FIRST_LOAD),
@@ -72,7 +72,7 @@ def find_contact_radius(
     some thousandths (``fixed_radius``), converges in a few steps. Small steps stretch the meshes, large ones
     make new ones.
 
-    Returns the last contact and every solve. Raises ElementsNotConverged after ``MOST_SOLVES``, or where the
+    Returns the last contact and every solve. Raises ElementsNotConverged after ``MOST_STEPS``, or where the
     load is not a positive number.
     """
     meshes = meshes_at(solids, level.grading, a)
@@ -86,7 +86,7 @@ def find_contact_radius(
         positive = 0 < contact.load < math.inf  # NaN is not
         if positive and abs(math.log(load / contact.load)) <= level.tolerance:
             return contact, solves
-        if not positive or len(solves) >= chosen.MOST_SOLVES:
+        if not positive or len(solves) >= chosen.MOST_STEPS:
             raise ElementsNotConverged(
                 f"the contact radius did not converge on the {level.name} mesh: after {len(solves)} solves, "
                 f"at {a:.4g} a_h, the load is {contact.load / load:.6g} of the required one; check "

@@ -28,12 +28,8 @@ from fem_reference.elasticity.axisymmetric import Discretisation, elasticity, st
 from fem_reference.meshing.location import LocatedPoints
 from fem_reference.meshing.mesh import MeridianMesh
 
-# A displaced edge adds the power -1/2, which is fitted and left out.
-_POWERS = np.array([-0.5, 0.5, 1.0, 1.5, 2.0])
-
+_POWERS = np.array(chosen.EDGE_POWERS)
 TRACTIONS = [2, 3, 5]  # rows of the stress on a plane z = const
-# Rows of the displacement and of the strain that are odd in r, by harmonic.
-_ODD = ([0], [3]), ([2], [0, 1, 2, 4])
 
 
 def edge_distances(mesh: MeridianMesh, farther: float = 1.0) -> np.ndarray:
@@ -95,8 +91,8 @@ class HarmonicField:
         else:
             u[:] = values[0] - values[1], values[1], values[2]
         # Nearer to the axis than ``at.r``: what is odd in r vanishes in proportion.
-        if self.harmonic < len(_ODD):
-            odd, odd_strains = _ODD[self.harmonic]
+        if self.harmonic < 2:
+            odd, odd_strains = (([0], [3]), ([2], [0, 1, 2, 4]))[self.harmonic]
             u[odd] *= at.r_given / at.r
             strain[odd_strains] *= at.r_given / at.r
         return u, strain

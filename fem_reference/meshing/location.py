@@ -28,7 +28,7 @@ class Uncached:
 class LocatedPoints:
     """Points of shape (n,) in their triangles.
 
-    r_given : radii as given.  r : at least ``AXIS_RADIUS`` contact radii.  z : on interfaces exactly.
+    r_given : radii as given.  r : at least ``SAME_PLACE`` contact radii.  z : on interfaces exactly.
     layer : layer of each point.  cells : triangle of (r, z).  X : its reference coordinates, (2, n).
     """
 
@@ -92,7 +92,7 @@ class Locator:
 
     def points(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> LocatedPoints:
         """The points (r, z) of shape (n,) with their triangles inside ``layer``."""
-        near = np.maximum(r, chosen.AXIS_RADIUS * self.mesh.contact_radius)
+        near = np.maximum(r, chosen.SAME_PLACE * self.mesh.contact_radius)
         return LocatedPoints(self, r, near, z, layer, *self.triangles(near, z, layer))
 
     def triangles(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -109,10 +109,10 @@ class Locator:
                 inside = np.min([X[0], X[1], 1 - X[0] - X[1]], axis=0)
                 best = np.argmax(inside, axis=1)
                 cells[mine] = candidates[np.arange(mine.size), best]
-                done = inside[np.arange(mine.size), best] > (1e-9 if count < chosen.NEIGHBOURS else -1e-9)
+                done = inside[np.arange(mine.size), best] > (1e-9 if count <= chosen.NEAREST else -1e-9)
                 if count == members.size:
                     break
-                mine, count = mine[~done], min(max(chosen.NEIGHBOURS, 4 * count), members.size)
+                mine, count = mine[~done], min(4 * count, members.size)
         return cells, _reference_coordinates(mesh.points, t[:, cells], r, z)
 
 

@@ -5,7 +5,7 @@ By hand: no package solves a contact by the compliance of one meridian plane.
 Unknown are the contour and the coefficients of the pressure, see ``star_contact``, and the approach delta.
 The part of the gap  u_z + height - delta  inside that functions
 
-    s^n T_j(2 s^2 - 1) cos(n tau),   n + 2 j <= degree + 4,
+    s^n T_j(2 s^2 - 1) cos(n tau),   n + 2 j <= degree + MORE,
 
 hold is made least in the norm of the weight (1 - s^2)^2.5, which leaves out the edge, where elements are too
 stiff; the pressure is to carry the load. The root of a pressure misses the displacement by about h^1.5 on a
@@ -19,19 +19,13 @@ from functools import cached_property
 
 import numpy as np
 
+from fem_reference import element_numbers as chosen
 from fem_reference.contact.levels import ElementsNotConverged
 from fem_reference.not_round.harmonic_compliance import HarmonicCompliance
 from fem_reference.not_round.indenter_height import Height
 from fem_reference.not_round.star_contact import Quadrature, StarPressure
 
-STEPS, ENOUGH, CLOSE = 24, 1e-7, 1e-4  # change of the edge in the last step, and in one that failed
-# Power of the root in the conditions: elements miss int p u dA by h^((WEIGHT + 5)/2) along an edge
-WEIGHT = 5
-MORE, FIRM = 4, 1e3  # degree of the conditions beyond that of the pressure; weight of the load
-# Of the peak, a negative pressure, and of the approach, a penetration: what elements may err by
-ALLOWED = 3e-3
 ADVICE = "; the contact may have a hole or more parts, change the shape or the load"
-LARGEST = 0.2  # change of the edge in one step
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +86,7 @@ class Closed:
         w, tau = np.meshgrid(np.linspace(0.05, 0.99, 20), np.linspace(0, np.pi, 37))
         x, y = p.points(w, tau)
         inside = p(x, y)
-        if inside.min() < -ALLOWED * inside.max():
+        if inside.min() < -chosen.ALLOWED * inside.max():
             at = np.unravel_index(int(inside.argmin()), inside.shape)
             raise ElementsNotConverged(
                 f"the pressure under the {name} is negative, {inside[at] / inside.max():.2g} of its largest, "
@@ -103,7 +97,7 @@ class Closed:
         r, theta = np.hypot(x, y), np.arctan2(y, x)
         near = (r > nodes[0]) & (r < nodes[-1]) & (x * (p.centre > 0) >= 0)
         gap = self._gap(height, r[near], theta[near, None])
-        if gap.size and gap.min() < -ALLOWED * self.approach:
+        if gap.size and gap.min() < -chosen.ALLOWED * self.approach:
             raise ElementsNotConverged(
                 f"the {name} penetrates by {-gap.min() / self.approach:.2g} of the approach outside the "
                 f"contact{ADVICE}"
@@ -132,7 +126,7 @@ def closed(
     height: Height,
     load: float,
     last: int,
-    enough: float = ENOUGH,
+    enough: float = chosen.EDGE_AT_REST,
 ) -> Closed:
     """Contour and pressure whose gap below an indenter of ``height`` (x, y) vanishes; scaled units.
 
@@ -141,16 +135,17 @@ def closed(
     one = compliances[0]
     matrices = sum(body.matrices[: last // body.fold + 1] for body in compliances)
     delta, size = 0.0, np.inf
-    for step in range(1, STEPS + 1):
+    for step in range(1, chosen.MOST_STEPS + 1):
         steps = step
         at = pressure.quadrature(one.vertices, last)
         root, s = np.sqrt(1 - at.s**2), at.s
         trial = root * pressure.polynomials(s, at.tau, pressure.degree)
         slope = _slope(pressure, at)
         moved = np.array([-slope * at.s ** _power(n) * np.cos(n * at.tau) for n in pressure.waves])
-        tests = root**WEIGHT * pressure.polynomials(s, at.tau, pressure.degree + MORE)
-        # orthonormal for the weight root^5, so that the squares of their products are those of the gap
-        tests = np.linalg.solve(np.linalg.cholesky((tests * at.weights / root**WEIGHT) @ tests.T), tests)
+        tests = root**chosen.WEIGHT * pressure.polynomials(s, at.tau, pressure.degree + chosen.MORE)
+        # orthonormal with the weight root^5: the squares of the products then add up to the gap's norm
+        products = (tests * at.weights / root**chosen.WEIGHT) @ tests.T
+        tests = np.linalg.solve(np.linalg.cholesky(products), tests)
         forces = np.concatenate([trial, moved, tests]) * at.weights
         n, k = len(trial), len(trial) + len(moved)
         L = one.nodal_loads(at.r, at.theta, forces.reshape(-1, *at.theta.shape), last)
@@ -160,20 +155,20 @@ def closed(
         A[:-1, :k], A[:-1, k], A[-1, :k] = work, -total[k:], total[:k]
         b = np.append(-forces[k:] @ height(at.x, at.y), load)
         # the load counts so much that it is kept
-        heavy = FIRM * np.abs(A[:-1, k]).max() / np.abs(A[-1]).max()
+        heavy = chosen.FIRM * np.abs(A[:-1, k]).max() / np.abs(A[-1]).max()
         A[-1], b[-1] = heavy * A[-1], heavy * b[-1]
         columns = np.abs(A).max(axis=0)
         x = np.linalg.lstsq(A / columns, b, rcond=1e-12)[0] / columns
         covariance = np.linalg.pinv(A.T @ A) * float(np.sum((A @ x - b) ** 2)) / (len(A) - len(x))
         size, delta = float(np.abs(x[n:k]).max()), float(x[k])
-        share = min(1.0, LARGEST / size)
+        share = min(1.0, chosen.LARGEST_MOVE / size)
         old = pressure.coefficients
         pressure = pressure.moved(share * x[n:k], old + share * (x[:n] - old))
         if size < enough:
             break
         if pressure.reach[1] > one.vertices[-1] or pressure.reach[0] < one.vertices[0]:
             break  # it leaves the mesh
-    return Closed(compliances, pressure, delta, steps, size < CLOSE, covariance)
+    return Closed(compliances, pressure, delta, steps, size < chosen.EDGE_CLOSE, covariance)
 
 
 def _power(n: int) -> int:

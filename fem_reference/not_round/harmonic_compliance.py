@@ -25,17 +25,10 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
+from fem_reference import element_numbers as chosen
 from fem_reference.elasticity.axisymmetric import Discretisation, Skeleton
 from fem_reference.elasticity.linear_system import ConstrainedFactor
 from fem_reference.scaling import LayeredSolid
-
-DIRECT = 8  # harmonics below are solved one by one
-# What is left of a harmonic m >= 2, which falls as the power m + 1 of the distance from the axis in contact
-# radii, where it is taken as zero
-VANISHED = 2e-6
-# Points of the interpolation beyond for a factor e of m: 5 change no stress by 1e-5 p_h, 2.8 by 2e-3.
-DENSITY = 3.1
-NORMAL = np.array([1.0, 0.0, 0.0])[:, None, None]  # shares of a normal load
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +94,7 @@ class HarmonicCompliance:
         pressed = {int(m): L for m, L in zip(self.harmonics, loads, strict=True) if L.any()}
 
         def respond(k: int, columns: np.ndarray) -> np.ndarray:
-            return self.meridians[k].extended(self.fields[k] @ columns, NORMAL * columns)
+            return self.meridians[k].extended(self.fields[k] @ columns, _normal(columns))
 
         return _superposed(self.solved, pressed, respond)
 
@@ -116,7 +109,7 @@ class HarmonicCompliance:
             if tractions.any():
                 pulled[m] = tractions
         known = dict(zip(self.solved, self.meridians, strict=True))
-        solved = (*(m for m in pulled if m < DIRECT), *(m for m in self.solved if m >= DIRECT))
+        solved = (*(m for m in pulled if m < chosen.DIRECT), *(m for m in self.solved if m >= chosen.DIRECT))
 
         def respond(k: int, columns: np.ndarray) -> np.ndarray:
             one = known.get(solved[k]) or Meridian.of(self.solid, self.discretisation, solved[k])
@@ -146,37 +139,42 @@ class HarmonicCompliance:
 
 
 def harmonic_compliance(
-    solid: LayeredSolid, d: Discretisation, last: int, fold: int, density: float = DENSITY, inner: float = 0.0
+    solid: LayeredSolid,
+    d: Discretisation,
+    last: int,
+    fold: int,
+    density: float = chosen.DENSITY,
+    inner: float = 0.0,
 ) -> HarmonicCompliance:
     """Compliance to pressures between the radius ``inner`` and the mesh's contact radius.
 
     Of harmonics 0, fold, .. to ``last``
     """
     wanted = range(0, last + 1, fold)
-    solved = (*(m for m in wanted if m < DIRECT), *_high(last + 1, density))
+    solved = (*(m for m in wanted if m < chosen.DIRECT), *_high(last + 1, density))
     first = np.searchsorted(d.contact_vertices, inner, side="right") - 1
     loaded = d.contact[d.order * first :]
     meridians = tuple(Meridian.of(solid, d, m) for m in solved)
-    fields = tuple(one.solve(loaded, NORMAL * np.eye(loaded.size)) for one in meridians)
+    fields = tuple(one.solve(loaded, _normal(np.eye(loaded.size))) for one in meridians)
     return HarmonicCompliance(solid, d, loaded, solved, fields, meridians, last, fold)
 
 
 def _high(last: int, density: float) -> list[float]:
     """m of the solutions from which those of ``DIRECT`` to ``last`` follow: all, or Chebyshev's points in
     log m."""
-    low, high = np.log(DIRECT), np.log(max(last, DIRECT))
+    low, high = np.log(chosen.DIRECT), np.log(max(last, chosen.DIRECT))
     count = int(np.ceil(density * (high - low))) + 1
-    if last < DIRECT + max(count, 2):
-        return list(range(DIRECT, last + 1))
+    if last < chosen.DIRECT + max(count, 2):
+        return list(range(chosen.DIRECT, last + 1))
     inner = (1 - np.cos(np.pi * np.arange(1, count - 1) / (count - 1))) / 2
-    return [DIRECT, *np.exp(low + (high - low) * inner).tolist(), last]
+    return [chosen.DIRECT, *np.exp(low + (high - low) * inner).tolist(), last]
 
 
 def _weights(solved: tuple[float, ...], m: int) -> list[tuple[int, float]]:
     """Numbers of the solutions whose weighted sum is that of m: itself, or Lagrange's of m times them."""
     if m in solved:
         return [(solved.index(m), 1.0)]
-    first = sum(one < DIRECT for one in solved)
+    first = sum(one < chosen.DIRECT for one in solved)
     x = np.log(solved[first:])
     away = np.log(m) - x
     lagrange = [np.prod(np.delete(away, k)) / np.prod(np.delete(x[k] - x, k)) for k in range(x.size)]
@@ -196,11 +194,11 @@ def _superposed(
     total: Any = 0.0
     for k, one in enumerate(solved):
         direct = [m for m in loads if m == one]
-        wanted = direct + (between if one >= DIRECT else [])
+        wanted = direct + (between if one >= chosen.DIRECT else [])
         if wanted:
             u = respond(k, np.stack([weights[m][k] * loads[m] for m in wanted], axis=-1))
             found |= {m: u[:, j] for j, m in enumerate(direct)}
-            total += u[:, len(direct) :] if one >= DIRECT else 0.0
+            total += u[:, len(direct) :] if one >= chosen.DIRECT else 0.0
     return found | dict(zip(between, total.T if between else (), strict=True))
 
 
@@ -221,7 +219,7 @@ class Meridian:
         fixed = [field * d.N + d.axis for field in axis]
         still, cells = d.outer, None
         if m >= 2:
-            beyond = np.hypot(*d.locations) > VANISHED ** (-1 / (m + 1))
+            beyond = np.hypot(*d.locations) > chosen.VANISHED ** (-1 / (m + 1))
             still, cells = np.flatnonzero(beyond), np.flatnonzero(~beyond[d.basis.element_dofs].all(axis=0))
         K = d.skeleton(solid.materials, m, cells)
         fixed += [field * d.N + still for field in range(count)]
@@ -260,6 +258,11 @@ class Meridian:
         """u_z at the nodes, of which the free unknowns are u."""
         row = self.factor.rows(self.skeleton.matrix.shape[0] - self.discretisation.N + loaded)
         return np.where(row[:, None] < 0, 0.0, u[row])
+
+
+def _normal(columns: np.ndarray) -> np.ndarray:
+    """Loads (3, nodes, columns) of which the normal ones are ``columns``, the others zero."""
+    return np.stack([columns, 0 * columns, 0 * columns])
 
 
 def _resultant(m: float, loads: np.ndarray) -> np.ndarray:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from fem_reference import element_numbers as chosen
 from fem_reference.elasticity.axisymmetric import Discretisation
 from fem_reference.elasticity.recovery import HarmonicField, stress_of
 from fem_reference.element_answer import ElementAnswer, PlainFields
@@ -21,15 +22,6 @@ from fem_reference.not_round.harmonic_compliance import HarmonicCompliance
 from fem_reference.not_round.star_contact import StarPressure
 from fem_reference.scaling import LayeredSolid, Scales
 from fem_reference.solved_contact import cartesian, tensor
-
-AXIS = 0.3  # triangles at the axis over those elsewhere
-# What lies beyond the last harmonic, over what the last third of them adds: of the deflection, whose terms
-# fall as m^-5/2, of the stress, m^-3/2, and alternate in sign but at the edge.
-BEYOND = 0.5, 1.0
-FULL = 0.4  # of the harmonics count in full in a stress, those beyond ever less
-# Distances from an edge, over the triangles there, between which the series beside it is fitted, and within
-# which it is used; its half powers, and as many to see what they add.
-BESIDE, WITHIN, HALVES = (1.2, 16.0), 2.5, (3, 2)
 
 
 def discretised(
@@ -49,8 +41,8 @@ def discretised(
         size,
         1.9 * size,
         size,
-        AXIS * size,
-        far_size=min(growth * size, 0.7),
+        chosen.SHAPED_AXIS * size,
+        far_size=min(growth * size, chosen.LARGEST_FAR),
         film_size=2 * size,
         rows=0.8 / size,
         surface=surface,
@@ -122,10 +114,12 @@ class OffAxisFields:
         surface = at.z == 0
         x, along = at.r_given * points.cos, surface & (np.abs(points.sin) < 1e-9)
         for k, edge in enumerate(self.edges):
-            near = np.flatnonzero(along & (np.abs(x - edge) < WITHIN * self.least))
+            near = np.flatnonzero(along & (np.abs(x - edge) < chosen.WITHIN * self.least))
             if near.size:
                 away = np.sign(edge) * (x[near] - edge) / self.least
-                more, fewer = ((_powers(away, n) @ c).T for n, c in zip(HALVES, self._series[k], strict=True))
+                more, fewer = (
+                    (_powers(away, n) @ c).T for n, c in zip(chosen.HALVES, self._series[k], strict=True)
+                )
                 s[:2, near] = more[:2] + self._root(x[near], edge)
                 late_s[:2, near] = np.abs(more - fewer)[:2] + np.abs(more[2:])
         p = np.where(surface, self.pressure(at.r_given * points.cos, at.r_given * points.sin), 0.0)
@@ -169,13 +163,13 @@ class OffAxisFields:
         Fitted where triangles are no larger than their distance from the edge. A root fitted errs by 1e-3.
         """
         found = []
-        away = self.least * np.outer([-1, 1], np.geomspace(*BESIDE, 24)).ravel()
+        away = self.least * np.outer([-1, 1], np.geomspace(*chosen.BESIDE_EDGE, 24)).ravel()
         for edge in self.edges:
             x, zero = edge + np.sign(edge) * away, np.zeros(away.size)
             located = self.discretisation.locator.points(np.abs(x), zero, zero.astype(int))
             _, s, _, late_s = self._summed(SolidPoints(located, np.sign(x), zero, x.shape))
             rest = np.concatenate([s[:2] - self._root(x, edge), late_s[:2]]).T
-            terms = (_powers(away / self.least, n) for n in HALVES)
+            terms = (_powers(away / self.least, n) for n in chosen.HALVES)
             found.append([np.linalg.lstsq(one, rest, rcond=None)[0] for one in terms])
         return found
 
@@ -189,7 +183,7 @@ class OffAxisFields:
 
 def _taper(share: np.ndarray) -> np.ndarray:
     """Weights of harmonics over the last one: the sum of a root's then oscillates less next to its end."""
-    return np.asarray(np.cos(np.pi / 2 * np.clip((share - FULL) / (1 - FULL), 0, 1)) ** 2)
+    return np.asarray(np.cos(np.pi / 2 * np.clip((share - chosen.FULL) / (1 - chosen.FULL), 0, 1)) ** 2)
 
 
 def _powers(away: np.ndarray, halves: int) -> np.ndarray:
@@ -265,5 +259,5 @@ class PressedSolid(PlainFields):
             return ElementAnswer(value * unit)
         axes = tuple(range(len(ahead)))
         change = np.abs(value - values[1][0]).max(axis=axes)
-        spread = change + BEYOND[which] * np.abs(late).max(axis=axes)
+        spread = change + chosen.BEYOND[which] * np.abs(late).max(axis=axes)
         return ElementAnswer(value * unit, np.broadcast_to(spread, value.shape) * unit)

@@ -14,12 +14,13 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 from scipy.ndimage import maximum_filter
 
+from fem_reference import element_numbers as chosen
 from fem_reference.element_answer import ElementAnswer, ElementPoints, ElementUncertainty
 from fem_reference.meshing.mesh import surface_size
-from fem_reference.not_round.gap_closing import ENOUGH, WEIGHT, Closed, closed
-from fem_reference.not_round.harmonic_compliance import DENSITY, harmonic_compliance
+from fem_reference.not_round.gap_closing import Closed, closed
+from fem_reference.not_round.harmonic_compliance import harmonic_compliance
 from fem_reference.not_round.indenter_height import Height, Indenter, touching_shape
-from fem_reference.not_round.off_axis import WITHIN, OffAxisFields, PressedSolid, discretised
+from fem_reference.not_round.off_axis import OffAxisFields, PressedSolid, discretised
 from fem_reference.not_round.star_contact import StarPressure, hertz_axes
 from fem_reference.scaling import Coatings, LayeredSolid, Scales
 from fem_reference.validation import (
@@ -30,27 +31,9 @@ from fem_reference.validation import (
     check_proportions,
 )
 
-MARGIN = 1.04  # of the contact up to the last node below the pressure, and as much before the first
-# Size of the triangles, of those on the surface, harmonics, degree of the polynomial in the pressure over the
-# number of waves around, which counts as 2 at least
-QUALITIES = {"fast": (0.5, 0.12, 120, 4), "default": (0.44, 0.045, 240, 6), "fine": (0.4, 0.035, 288, 6)}
-# Times the number of waves as wide as the contact at its end on y = 0, as deep inside as the triangles there.
-AT_END = 5.0
-STIFF = 1e-5  # of the approach, by elements of the default size; the change from the companion may vanish
-COARSER = 1.3  # triangles of the companion over those of the mesh
 # Roache's grid convergence index for two meshes, times the change from the companion: of what the conditions
-# give, with their order, and of fields, with that observed beside edges, which no mesh follows
-SAFETY, ORDER = 3.0, (WEIGHT + 5) / 2
-BY_CONDITIONS, OF_FIELDS = SAFETY / (COARSER**ORDER - 1), 2.0
-# times as much on the axis, where integrals in r dr hold the fields least; so far around it
-AXIS = 2.25, 0.15
-RESOLVED = 1 / 8  # of an element's width
-CORRECTING = 96  # of the harmonics, that correct the pressure
-ROUGH_DEGREE, LOWER = 4, 2  # degree on the rough mesh; by which that of the companion is lowered
-ROUNDS = 12  # of rough meshes, each wider where the contact leaves it
-ENOUGH_ROUGH = 1e-4  # change of the rough edge in the last step
-TYPICAL = 97  # per cent of points below the contact whose stress changes less from the companion
-SAMPLES = 8, 3, 7  # of such points by radius, angle and depth
+# give, with their order, (WEIGHT + 5)/2
+BY_CONDITIONS = chosen.SAFETY / (chosen.SHAPED_COARSER ** ((chosen.WEIGHT + 5) / 2) - 1)
 
 
 @dataclass(frozen=True)
@@ -64,7 +47,7 @@ class ShapedGrid:
     density: float
 
 
-ROUGH = ShapedGrid(0.6, 0.16, 36, 1.3, DENSITY / 2)
+ROUGH = ShapedGrid(*chosen.ROUGH_GRID, chosen.DENSITY / 2)
 
 
 @dataclass(frozen=True)
@@ -137,10 +120,10 @@ class ShapedContact(PressedSolid):
             return ElementAnswer(value, U + self._errors[1])
         x, y = points.x, points.y
         smeared = np.where(np.asarray(points.z) == 0, self._smeared(x, y), 0.0)
-        distance = np.hypot(x, y) / (AXIS[1] * self._units.length)
-        safety = OF_FIELDS * (1 + (AXIS[0] - 1) * np.maximum(1 - distance, 0))
+        distance = np.hypot(x, y) / (chosen.AXIS_SAFETY[1] * self._units.length)
+        safety = chosen.OF_FIELDS * (1 + (chosen.AXIS_SAFETY[0] - 1) * np.maximum(1 - distance, 0))
         of_pressure = np.where(np.asarray(points.z) == 0, self._uncertain_pressure(x, y), 0.0)
-        change = np.maximum(safety * U, OF_FIELDS * self.typical)
+        change = np.maximum(safety * U, chosen.OF_FIELDS * self.typical)
         return ElementAnswer(value, np.maximum(change, of_pressure) + self._errors[2] + smeared)
 
     @property
@@ -163,10 +146,11 @@ class ShapedContact(PressedSolid):
         fields, length = self._fine, self._units.length
         edges = np.array(fields.edges) * length
         away = np.abs(np.hypot(x, y)[..., None] - np.abs(edges)).min(axis=-1)
-        h = length * np.maximum(RESOLVED * surface_size(fields.surface, away / length), fields.least / 3)
+        size = surface_size(fields.surface, away / length)
+        h = length * np.maximum(chosen.RESOLVED * size, fields.least / 3)
         k = np.maximum(h, np.hypot(x, y) * np.pi / (2 * fields.compliance.last))
         nu = fields.compliance.solid.materials[0][1]
-        on_series = (y == 0) & (away < length * WITHIN * fields.least)
+        on_series = (y == 0) & (away < length * chosen.WITHIN * fields.least)
         missed = []
         for i, j in ((h, 0 * h), (0 * k, k)):
             for beside in (-0.5, 0.0, 0.5):  # it changes sign next to the edge
@@ -256,8 +240,8 @@ def solve_shape(
     Raises ValueError for bad input, ElementsNotConverged where no such contact is found.
     """
     began = time.perf_counter()
-    check_choice("quality", quality, tuple(QUALITIES))
-    usual = QUALITIES[quality]
+    check_choice("quality", quality, tuple(chosen.SHAPED_QUALITY))
+    usual, default = (chosen.SHAPED_QUALITY[one] for one in (quality, "default"))
     size, surface = usual[0] if size is None else size, usual[1] if surface is None else surface
     check_positive(radius=radius, load=load, far=far, size=size, surface=surface, first=first)
     check_materials(coatings, substrate, friction)
@@ -272,7 +256,7 @@ def solve_shape(
     waves = max(shape.fold, 2)
     axes = hertz_axes(shape.curvatures, half, compliance)
     begin = StarPressure.of_ellipse(
-        shape.centre, (first * axes[0], first * axes[1]), load / E, shape.fold, ROUGH_DEGREE
+        shape.centre, (first * axes[0], first * axes[1]), load / E, shape.fold, chosen.ROUGH_DEGREE
     )
     degree = usual[3] * waves if degree is None else degree
 
@@ -283,7 +267,9 @@ def solve_shape(
             check_proportions(one.thicknesses, "the contact's extent", name)
         return tuple(replace(one, far=widest) for one in scaled)
 
-    def on_mesh(reach: float, grid: ShapedGrid, begin: StarPressure, enough: float = ENOUGH) -> Closed:
+    def on_mesh(
+        reach: float, grid: ShapedGrid, begin: StarPressure, enough: float = chosen.EDGE_AT_REST
+    ) -> Closed:
         """The contact [reach] on a mesh to the radius ``reach`` [m]."""
         start = begin.scaled(reach)
         # vertices at the radii of the edge on y = 0 and of its sides, none right beside another
@@ -307,25 +293,25 @@ def solve_shape(
         return closed(compliances, start, *arguments(reach, grid), enough)
 
     def arguments(reach: float, grid: ShapedGrid) -> tuple[Height, float, int]:
-        return shape.scaled(reach), load / (E * reach**2), min(CORRECTING, grid.harmonics)
+        return shape.scaled(reach), load / (E * reach**2), min(chosen.CORRECTING, grid.harmonics)
 
-    for _ in range(ROUNDS):
+    for _ in range(chosen.MOST_STEPS):
         reach = ROUGH.margin * begin.reach[1]
-        rough = on_mesh(reach, ROUGH, begin, ENOUGH_ROUGH)
+        rough = on_mesh(reach, ROUGH, begin, chosen.EDGE_CLOSE)
         begin = rough.pressure.scaled(1 / reach)
         if rough.converged:
             break
     rough.check_rest(indenter[0])
     # six digits, lest the mesh follow the rounding
-    reach = float(f"{MARGIN * begin.reach[1]:.6g}")
+    reach = float(f"{chosen.MARGIN * begin.reach[1]:.6g}")
     if harmonics is None:
         at_end = np.pi / begin.scaled(reach).end_angle(float(surface_size(surface, 0.0)))
         fold = shape.turns
-        harmonics = fold * int(np.ceil(usual[2] / fold * max(1.0, AT_END * at_end / QUALITIES["default"][2])))
+        harmonics = fold * int(np.ceil(usual[2] / fold * max(1.0, chosen.AT_END * at_end / default[2])))
     check_positive(harmonics=harmonics)
     unit = Scales(length=reach, pressure=E, modulus=E)
 
-    grid = ShapedGrid(size, surface, harmonics, MARGIN, DENSITY)
+    grid = ShapedGrid(size, surface, harmonics, chosen.MARGIN, chosen.DENSITY)
     found = on_mesh(reach, grid, begin.of_degree(degree))
     found.check(shape.scaled(reach), indenter[0])
     numbers, residual = _numbers(found), found.residual(shape.scaled(reach))
@@ -334,16 +320,17 @@ def solve_shape(
     coarse: list[OffAxisFields | None] = [None] * len(layers)
     uncertainty, extents, lower = None, None, None
     if estimate_uncertainty:
-        coarser = ShapedGrid(COARSER * size, COARSER * surface, harmonics, MARGIN, DENSITY / COARSER)
+        r = chosen.SHAPED_COARSER
+        coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
         start = found.pressure.scaled(1 / reach)
         companion = on_mesh(reach, coarser, start)
-        fewer = companion.of_degree(degree - LOWER, *arguments(reach, coarser))
+        fewer = companion.of_degree(degree - chosen.LOWER, *arguments(reach, coarser))
         lower = fewer.pressure
-        coarse = [_fields(companion, k, sliding[k], COARSER * surface) for k in range(len(layers))]
+        coarse = [_fields(companion, k, sliding[k], r * surface) for k in range(len(layers))]
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
-        change[1] = max(change[1], STIFF * (size / QUALITIES["default"][0]) ** 4 * numbers[1])
+        change[1] = max(change[1], chosen.STIFF * (size / default[0]) ** 4 * numbers[1])
         cut = np.abs(_numbers(companion) - _numbers(fewer))
-        left = np.maximum(residual, OF_FIELDS * found.errors) * np.abs(numbers)
+        left = np.maximum(residual, chosen.OF_FIELDS * found.errors) * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
         parts = (("element size", change), ("degree of the pressure", cut), ("gap left", left))
@@ -394,7 +381,7 @@ def _fields(found: Closed, body: int, friction: float, surface: float) -> OffAxi
 
 def _typical(solid: PressedSolid) -> float:
     """Change of the stress [Pa] from the companion, exceeded at few points below the contact."""
-    radii, turns, depths = SAMPLES
+    radii, turns, depths = chosen.TYPICAL_POINTS
     reach = solid._units.length
     r, theta, z = np.meshgrid(
         reach * (np.arange(radii) + 0.4) / radii,
@@ -402,7 +389,7 @@ def _typical(solid: PressedSolid) -> float:
         reach * (0.1 + np.arange(depths) / depths),
     )
     _, U = solid.sample(ElementPoints(r * np.cos(theta), r * np.sin(theta), z), "stress")
-    return float(np.percentile(U[0, 0], TYPICAL))
+    return float(np.percentile(U[0, 0], chosen.TYPICAL))
 
 
 def _numbers(found: Closed) -> np.ndarray:

@@ -18,12 +18,8 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
+from fem_reference import element_numbers as chosen
 from fem_reference.elasticity.line_quadrature import gauss_legendre
-
-RADIAL = 6  # points between two vertices of the surface
-ANGULAR = 24, 1.6  # points on an arc inside the contact: some, and more for each harmonic
-SAMPLES = 256  # on half a circle, between which an arc begins or ends
-BISECTIONS = 48
 
 
 def hertz_axes(curvatures: tuple[float, float], load: float, compliance: float) -> tuple[float, float]:
@@ -157,8 +153,8 @@ class StarPressure:
 
         By Gauss-Legendre on the arcs inside the contact, towards whose ends p falls like a square root.
         """
-        r, of_r = gauss_legendre(RADIAL, vertices[:-1], vertices[1:])
-        theta = np.pi * np.arange(SAMPLES + 1) / SAMPLES
+        r, of_r = gauss_legendre(chosen.RADIAL, vertices[:-1], vertices[1:])
+        theta = np.pi * np.arange(chosen.ARC_SAMPLES + 1) / chosen.ARC_SAMPLES
 
         def within(r: np.ndarray, theta: np.ndarray) -> np.ndarray:
             return self.polar(r * np.cos(theta), r * np.sin(theta))[0] < 1
@@ -166,7 +162,7 @@ class StarPressure:
         inside = within(r[:, None], theta)
         ring, place = np.nonzero(inside[:, 1:] != inside[:, :-1])
         low, high = theta[place], theta[place + 1]
-        for _ in range(BISECTIONS):
+        for _ in range(np.finfo(float).nmant):  # to rounding
             middle = (low + high) / 2
             same = within(r[ring], middle) == inside[ring, place]
             low, high = np.where(same, middle, low), np.where(same, high, middle)
@@ -174,7 +170,7 @@ class StarPressure:
         ends = np.concatenate([low, np.zeros(inside[:, 0].sum()), np.full(inside[:, -1].sum(), np.pi)])
         order = np.lexsort((ends, rings))
         arc, (begin, end) = rings[order][::2], ends[order].reshape(-1, 2).T
-        t, weight = gauss_legendre(int(ANGULAR[0] + ANGULAR[1] * last), -np.pi / 2, np.pi / 2)
+        t, weight = gauss_legendre(int(chosen.ANGULAR[0] + chosen.ANGULAR[1] * last), -np.pi / 2, np.pi / 2)
         angle = (begin + end)[:, None] / 2 + (end - begin)[:, None] / 2 * np.sin(t)
         of_angle = (end - begin)[:, None] / 2 * np.cos(t) * weight
         x, y = r[arc, None] * np.cos(angle), r[arc, None] * np.sin(angle)

@@ -157,7 +157,7 @@ def _gauss_block(mean: Array, g: Function, d: float, inner: int, outer: int, rea
     reach : distance to the nearest singularity of g in patches, sets the order: error rho^(-2 order).
     """
     t = 2 * max(reach, 0.05)
-    order = int(np.ceil(-np.log(numbers.PATCH_DIGITS) / (2 * np.log(t + np.hypot(t, 1)))))
+    order = int(np.ceil(-np.log(numbers.NEGLIGIBLE) / (2 * np.log(t + np.hypot(t, 1)))))
     s, w = gauss_legendre(max(order, 3), -0.5, 0.5)
     i, j = np.tril_indices(outer)
     ring = i >= inner

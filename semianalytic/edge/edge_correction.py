@@ -111,16 +111,16 @@ def _start(problem: LevelProblem, p: Array) -> Shape | None:
     grid = problem.grid
     harmonics: tuple[int, ...] = edge_shape.FULL
     if problem.indenter.round:
-        harmonics = edge_shape.ROUND
+        harmonics = numbers.ROUND
     elif grid.quarter:
-        harmonics = edge_shape.EVEN
+        harmonics = numbers.EVEN
     elif np.allclose(problem.gap, problem.gap[:, ::-1], rtol=0.0, atol=numbers.ROUNDING * problem.depth):
-        harmonics = edge_shape.ACROSS
+        harmonics = numbers.ACROSS
     whole = grid.whole(p)
     x, y = grid.whole_centres(problem.window)
     twin = grid.quarter and not (whole[np.abs(x) < grid.d] > 0).any()
     if twin:
-        harmonics = edge_shape.HALF
+        harmonics = numbers.HALF
         whole = np.where(x[:, None] > 0, whole, 0.0)
     if not _is_island(whole > 0):
         return None
@@ -163,12 +163,8 @@ def _terms(shape: Shape, d: float) -> int:
     length = float(np.arcsinh(1 / e))
     finer = max(0.0, float(np.log(patches / numbers.USUAL_RADIUS) / np.log(1.4)))
     wanted = numbers.LAYERED[0] + numbers.LAYERED[1] * length + finer
-    return int(
-        max(
-            numbers.FEWEST_TERMS,
-            min(wanted, patches / 4, numbers.RESOLVED_TERMS * np.sqrt(e * length * patches)),
-        )
-    )
+    resolved = numbers.RESOLVED_TERMS * np.sqrt(e * length * patches)
+    return int(max(numbers.FEWEST_TERMS, min(wanted, patches / numbers.PATCHES_A_WAVE, resolved)))
 
 
 def _near_influence(problem: LevelProblem) -> Array:

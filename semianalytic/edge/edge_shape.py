@@ -32,11 +32,7 @@ from semianalytic import numbers
 
 Array = NDArray[np.floating]
 
-ROUND = (0,)  # harmonics of a contact that is round,
-EVEN = (0, 2, 4, 6, 8, 10, 12)  # even in x and in y, the last for the ends of a long ellipse on a stiff film,
-HALF = tuple(range(9))  # even in y, beside its mirror image,
-ACROSS = (0, 1, 2, 3, 4, 6, 8, 9, 10, 12)  # even in y,
-FULL = (*ACROSS, *(-n for n in ACROSS[1:]))  # any
+FULL = (*numbers.ACROSS, *(-n for n in numbers.ACROSS[1:]))  # without a symmetry
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +57,7 @@ class Shape:
     @property
     def round(self) -> bool:
         """Whether f depends on the distance from the origin alone."""
-        return self.harmonics == ROUND and self.axes[0] == self.axes[1] and self.centre == (0.0, 0.0)
+        return self.harmonics == numbers.ROUND and self.axes[0] == self.axes[1] and self.centre == (0.0, 0.0)
 
     @property
     def mirrors(self) -> tuple[bool, bool]:
@@ -109,7 +105,7 @@ class Shape:
     def _in_frame(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
         s2 = u * u + v * v
         t = 1 - s2
-        if self.harmonics == ROUND:
+        if self.harmonics == numbers.ROUND:
             return t, s2, np.ones((1, *s2.shape))
         H = np.empty((len(self.harmonics), *s2.shape))
         fold, last = math.gcd(*self.harmonics), max(map(abs, self.harmonics))
@@ -122,7 +118,7 @@ class Shape:
         t = t + 2 * np.tensordot(np.where(high, 0.0, self.contour), H, 1)
         # far away the higher harmonics would make t positive again
         t = np.where(
-            t > numbers.FAR_OUTSIDE, t + 2 * np.tensordot(np.where(high, self.contour, 0.0), H, 1), t
+            t > -numbers.FAR_INSIDE, t + 2 * np.tensordot(np.where(high, self.contour, 0.0), H, 1), t
         )
         return t, s2, H
 
@@ -142,7 +138,7 @@ class Shape:
         low, w = 2 // fold + 1, (u + 1j * v) ** fold
         t = t + 2 * np.polynomial.polynomial.polyval(w, power[:low]).real
         return np.where(
-            t > numbers.FAR_OUTSIDE,
+            t > -numbers.FAR_INSIDE,
             t + 2 * (w**low * np.polynomial.polynomial.polyval(w, power[low:])).real,
             t,
         )
@@ -239,7 +235,7 @@ class Shape:
 
     def with_terms(self, terms: int, highest: float = np.inf) -> "Shape":
         """Shape with as many polynomials, and all harmonics of its symmetry up to the ``highest``."""
-        families = (HALF,) if self.twin else (ROUND, EVEN, ACROSS, FULL)
+        families = (numbers.HALF,) if self.twin else (numbers.ROUND, numbers.EVEN, numbers.ACROSS, FULL)
         family = next(one for one in families if {*self.harmonics} <= {*one})
         wanted, held = tuple(n for n in family if abs(n) <= highest), min(terms, len(self.coefficients))
         shared = {*wanted} & {*self.harmonics}
@@ -261,13 +257,13 @@ def start(pressure: Array, x: Array, y: Array, harmonics: tuple[int, ...], terms
     u, v = x - x0, y - y0
     A, B = 2 * float(np.sqrt(np.mean(u * u))), 2 * float(np.sqrt(np.mean(v * v)))
     contour = np.zeros(len(harmonics))
-    if harmonics == ROUND:
+    if harmonics == numbers.ROUND:
         A = B = float(np.sqrt(count * area / np.pi))
     elif -2 in harmonics:  # an ellipse whose axes are turned
         r = 4 * float(np.mean(u * v)) / (A * B)
         A, B = A * float(np.sqrt(1 - r * r)), B * float(np.sqrt(1 - r * r))
         contour[harmonics.index(-2)] = r / 2
-    if harmonics in (ACROSS, FULL):
+    if harmonics in (numbers.ACROSS, FULL):
         A, B = _lobed(contour, harmonics, u / A + 1j * v / B, (A, B), area)
     b = np.zeros((terms, len(harmonics)))
     b[0, 0] = 1.5 * float(pressure[loaded].mean())
@@ -366,7 +362,7 @@ def _between_centres(shape: Shape, loaded: NDArray[np.bool_], x: Array, y: Array
     """The shape with its edge outside the centres of loaded patches and inside those of unloaded ones."""
     t = shape.inside(x, y)
     beside = maximum_filter(loaded, 3) & ~loaded
-    slack = 2 * numbers.SLACK * patch / min(shape.axes)
+    slack = 2 * numbers.MISFIT * patch / min(shape.axes)
     low, high = float(t[loaded].min()), float(t[beside].max(initial=-np.inf))
     change = np.zeros((len(shape.coefficients) + 1) * len(shape.harmonics))
     if low < -slack:

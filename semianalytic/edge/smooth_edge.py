@@ -28,7 +28,7 @@ Indices = NDArray[np.intp]
 # Places in a patch, in patches from its centre: of the parts, their faces.
 MIDDLES = (np.arange(numbers.PARTS) - numbers.PARTS // 2) / numbers.PARTS
 FACES = np.arange(numbers.PARTS + 1) / numbers.PARTS - 0.5
-NODES = np.linspace(-0.5, 0.5, 5)
+NODES = np.linspace(-0.5, 0.5, numbers.SQUARE_NODES)
 
 
 @dataclass(frozen=True, eq=False)

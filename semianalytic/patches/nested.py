@@ -32,7 +32,7 @@ def levels(
     sizes = [odd(numerics.patches / ratio) for ratio in ratios[:-1]] + [numerics.patches]
     kept = len(sizes)
     while sizes[0] > 2 * numbers.COARSEST:
-        sizes.insert(0, odd(sizes[0] / numbers.STRIDE))
+        sizes.insert(0, odd(sizes[0] / (2 * numbers.FINER)))
     starter = replace(numerics, tolerance=max(3e-4, numerics.tolerance))
     found: list[Level] = []
     rough = replace(indenter, edge_correction=False, between=None)

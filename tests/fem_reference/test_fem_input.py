@@ -47,7 +47,7 @@ def test_bad_input_is_refused_in_one_line(change, message):
 
 
 def test_too_few_iterations_raise_an_error_that_states_what_was_reached(monkeypatch):
-    monkeypatch.setattr(element_numbers, "MOST_SOLVES", 1)
+    monkeypatch.setattr(element_numbers, "MOST_STEPS", 1)
     with pytest.raises(ElementsNotConverged, match=r" 1 solves.*moduli"):
         solve(**{**GOOD, "coatings": ((4 * E, 0.3, 5e-5),)})
 

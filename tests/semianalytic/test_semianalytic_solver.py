@@ -285,8 +285,7 @@ def test_patches_are_refined_to_the_accuracy_or_as_far_as_allowed(monkeypatch):
     for name in names:
         error = abs(getattr(rough, name) - getattr(fine, name))
         assert error <= getattr(rough.uncertainty, name) + getattr(fine.uncertainty, name)
-    for limit in ("LARGEST_GRID", "LARGE_GRID"):
-        monkeypatch.setattr(f"semianalytic.numbers.{limit}", 100)
+    monkeypatch.setattr("semianalytic.numbers.LARGEST_GRID", 100)
     stopped = solve(STIFF, **given, accuracy=1e-9)
     assert stopped.diagnostics.patches_per_side <= 100
     assert reached(stopped) > 1e-9

@@ -1,4 +1,4 @@
-"""Numeric constants of both methods: value, what is said of each, whether it stands in its method's table."""
+"""Numbers that both methods chose: value, what is said of each, whether it stands in its method's table."""
 
 import ast
 import re
@@ -15,7 +15,11 @@ NAME = re.compile(r"_?[A-Z][A-Z0-9_]*")
 
 
 class MethodConstant(NamedTuple):
-    """A number, or a few, that a module of a method gives a name; ``said``: the comment at or above it."""
+    """A number, or a few, that a module of a method gives a name; ``said``: the comment at or above it.
+
+    Outside the tables a number that is computed from another constant is no choice, nor are whole numbers in
+    a list or a dictionary, which count rows, harmonics or orders.
+    """
 
     path: str
     name: str
@@ -33,6 +37,8 @@ def method_constants() -> list[MethodConstant]:
             lines, place = text.splitlines(), path.relative_to(ROOT).as_posix()
             for node in ast.parse(text).body:
                 value = getattr(node, "value", None)
+                if path.name != table and value and _follows(value):
+                    continue
                 if isinstance(node, ast.Assign | ast.AnnAssign) and value and _numeric(value):
                     targets = node.targets if isinstance(node, ast.Assign) else [node.target]
                     parts = [part for one in targets for part in ast.walk(one)]
@@ -47,15 +53,30 @@ def method_constants() -> list[MethodConstant]:
 
 
 def _numeric(value: ast.expr) -> bool:
-    """Whether numbers, and no texts, are written in ``value``."""
-    written = [node.value for node in ast.walk(value) if isinstance(node, ast.Constant)]
+    """Whether numbers, and no texts but keys, are written in ``value``."""
+    keys = {id(key) for node in ast.walk(value) if isinstance(node, ast.Dict) for key in node.keys}
+    written = [one.value for one in ast.walk(value) if isinstance(one, ast.Constant) and id(one) not in keys]
     return any(type(one) in (int, float) for one in written) and not any(isinstance(w, str) for w in written)
+
+
+def _follows(value: ast.expr) -> bool:
+    """Whether ``value`` is computed from a constant, or is a list or a dictionary of whole numbers."""
+    nodes = list(ast.walk(value))
+    named = [getattr(node, "id", getattr(node, "attr", "")) for node in nodes]
+    numbers = [
+        node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, float)
+    ]
+    return any(map(NAME.fullmatch, named)) or (
+        isinstance(value, ast.List | ast.Dict) and all(one.is_integer() for one in numbers)
+    )
 
 
 def _said(lines: list[str], first: int, last: int) -> str:
     """The comment behind an assignment, or the lines of comment above it."""
     behind = [line.partition("#")[2].strip() for line in lines[first - 1 : last] if "#" in line]
     above: list[str] = []
+    while not behind and re.fullmatch(r"[A-Z_, ]+ = [^#]+", lines[first - 2]):  # one comment for both
+        first -= 1
     while not behind and first > 1 and lines[first - 2].startswith("#"):
         first -= 1
         above.insert(0, lines[first - 1].lstrip("# "))

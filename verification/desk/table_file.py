@@ -12,7 +12,7 @@ from verification.cases.case_file import Case
 from verification.cases.toml_file import CaseError
 from verification.desk.contact_answer import ContactAnswer, symbol_and_unit, with_name
 from verification.desk.material_spread import Spread
-from verification.running.checked_files import write_atomically
+from verification.running.checked_files import rows_of_csv, write_atomically
 
 MOST_ROWS, MOST_COLUMNS, MOST_BYTES, MOST_UNPACKED = 100_000, 200, 5_000_000, 50_000_000
 FORMATS = (".csv", ".xlsx")
@@ -23,7 +23,7 @@ Cell = str | float | None
 def read_cells(path: Path) -> list[list[str]]:
     """The cells of a CSV file, or of the first sheet of an XLSX file, as text. Raises CaseError.
 
-    The separator of CSV is a semicolon, a tab or a comma, whichever the first line has most of.
+    CSV as of ``rows_of_csv``.
     """
     try:
         with path.open("rb") as file:
@@ -35,9 +35,8 @@ def read_cells(path: Path) -> list[list[str]]:
         text = raw.decode("utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise CaseError(f"{path}: cannot be read as CSV in UTF-8 ({error})") from None
-    first = text.partition("\n")[0]
     try:
-        return list(csv.reader(io.StringIO(text), delimiter=max(";\t,", key=first.count)))
+        return rows_of_csv(text)
     except csv.Error as error:
         raise CaseError(f"{path}: not CSV ({error})") from None
 

@@ -1,6 +1,8 @@
 """Files of a run directory: written whole or not at all, read back only if their checksum holds."""
 
+import csv
 import hashlib
+import io
 import json
 import lzma
 import os
@@ -17,6 +19,7 @@ MAX_BYTES = 50_000_000
 PART = ".coatcheck-part"  # how the name of a file ends that is still being written
 # Whatever the commands of this program make below a directory of theirs.
 FOLDERS = ("cases", "planes", "fields", "problems", "answers", "clean", "trials", "cache", "figures")
+_DECIMAL_COMMA = re.compile(r"^(\s*[+-]?\d*),(\d+(?:[eE][+-]?\d+)?\s*)$")
 _HEAD = re.compile(r'\{"sha256": "([0-9a-f]{64})", "payload": ')
 
 
@@ -157,3 +160,15 @@ def locked(folder: Path) -> Iterator[None]:
 
 def _digest(body: str) -> str:
     return hashlib.sha256(body.encode()).hexdigest()
+
+
+def rows_of_csv(text: str) -> list[list[str]]:
+    """Rows of a CSV text, separated by semicolons, tabs or commas, whichever the first line has most of.
+
+    Where commas do not separate they may be decimal; such numbers get a point. Raises csv.Error.
+    """
+    separator = max(";\t,", key=text.partition("\n")[0].count)
+    rows = csv.reader(io.StringIO(text), delimiter=separator)
+    if separator == ",":
+        return list(rows)
+    return [[_DECIMAL_COMMA.sub(r"\1.\2", cell) for cell in row] for row in rows]

@@ -122,6 +122,16 @@ def test_a_bad_curve_is_one_message(text, said, tmp_path):
     assert str(error.value).startswith(str(path))
 
 
+def test_a_curve_with_decimal_commas_is_the_one_with_points(tmp_path):
+    text = "load [mN],depth [nm]\n" + "".join(f"0.{k},{k}.5e1\n" for k in range(1, 8))
+    paths = tmp_path / "points.csv", tmp_path / "commas.csv"
+    paths[0].write_text(text)
+    paths[1].write_text(text.replace(",", ";").replace(".", ","))
+    points, commas = (np.array(list(read_curve(path).values.values())) for path in paths)
+    np.testing.assert_array_equal(points, commas)
+    assert points[1, 6] == pytest.approx(75e-9)
+
+
 @pytest.mark.parametrize(
     ("changed", "said"),
     [
