@@ -15,7 +15,7 @@ from fem_reference.meshing.location import LocatedPoints, Uncached
 
 # Those of triangles are moved towards the centre in depth: none lies on a plane with a formula of its own,
 # nor at a vertex of a plane, where two cells have two stresses.
-_CELL = np.linspace(chosen.SAME_PLACE, 1 - chosen.SAME_PLACE, 7)
+_CELL = np.linspace(chosen.EDGE_SIZE, 1 - chosen.EDGE_SIZE, 7)
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,7 @@ class ComparisonPoints(Uncached):
         shape = np.stack([1 - s1 - s2, s1, s2])
         corners = d.mesh.points[:, d.triangulation.t]
         r, z = np.einsum("cp,dct->dpt", shape, corners)
-        z = z + chosen.SAME_PLACE * (corners[1].mean(axis=0) - z)
+        z = z + chosen.EDGE_SIZE * (corners[1].mean(axis=0) - z)
         layer = np.broadcast_to(d.mesh.layer, r.shape)
         r, z = np.minimum((r, z), self._reach).reshape(2, -1)
         return self._on_each(r, z, layer.ravel())

@@ -35,7 +35,10 @@ LARGEST_IN_FAN, LARGEST_FAR, LARGEST_IN_FILM = 0.6, 0.7, 0.47
 ROWS = 2.6  # of triangles across a coating next to the contact
 # Films buried at many times their thickness are left to flat triangles: least height of a row over the size.
 LEAST_ROW = 0.25
-EDGE_SIZE = 1e-7  # smallest triangle, at the contact edge, over the contact radius
+# Smallest triangle, at the contact edge, over the contact radius. Places nearer to each other coincide: with
+# the axis, where u/r is the limit from outside, exact to its square; with a jump of a prescribed pressure,
+# where it has no value; over a triangle, with an interface.
+EDGE_SIZE = 1e-7
 # Size of a triangle in the fan: this power of its distance from the edge. What the innermost triangles miss
 # counts as the root of the distance.
 FAN_POWER = 0.94
@@ -133,9 +136,6 @@ COLUMNS_AT_ONCE = 32  # of right-hand sides: all at once take twice as long, for
 MOST_STEPS = 30
 # Triangles whose centroids are nearest: most points lie within one of a few, those on edges need more.
 NEAREST = 4
-# Distance over the contact radius, or over a triangle, of places that coincide: the axis, where u/r is the
-# limit from outside, exact to its square; a jump of a prescribed pressure, which has no value; an interface.
-SAME_PLACE = 1e-7
 
 # --- what is refused
 MAX_COATINGS = 50

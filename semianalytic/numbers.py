@@ -9,8 +9,6 @@ problems), "bench" for ``python tests/tools bench`` (time), else a file under ``
 # Sides of a patch beyond which a series replaces the closed form; where their errors cross.
 # [test_halfspace]
 FAR_SIDES = 25.0
-# Floor of squared lengths: infinities at the edges of patches become finite, alike on both sides. [rounding]
-TINY = 1e-100
 # Points of the logarithmic grid of Hankel transforms, usual and long, and the ratio of its ends, usual:
 # more points cost time, a longer grid holds films that stretch over more than 1e4 of their scale.
 # [test_hankel]
@@ -33,12 +31,12 @@ NEGLIGIBLE = 1e-12
 # Patches a side of the coarsest grid that is solved. [problems]
 COARSEST = 33
 # Residual on a fixed contact set, over the first one, at which the set is updated, iterations after which it
-# is in any case, and updates after which it follows the signs of p and g: fewer let the set oscillate. After
-# as many iterations the residual is cut off at the edge. [bench]
-RESIDUAL_FALL, ITERATIONS_PER_SET, PREDICTED_UPDATES = 0.5, 3, 12
-# Iterations after which there is no preconditioner, as Polonsky and Keer: for contacts that it misleads.
+# is in any case, and updates after which it follows the signs of p and g: fewer let the set oscillate.
 # [bench]
-PRECONDITIONED_ITERATIONS = 50
+RESIDUAL_FALL, ITERATIONS_PER_SET, PREDICTED_UPDATES = 0.5, 3, 12
+# Iterations after which the residual is cut off at the edge, and after which there is no preconditioner, as
+# Polonsky and Keer: for contacts that it misleads. [bench]
+EXTENDED_ITERATIONS, PRECONDITIONED_ITERATIONS = 10, 50
 # Patches over which the residual is extended beyond the contact, and share of contact in the mean below
 # which it fades; cut off at the edge it would take twice the iterations. [bench]
 EXTENSION, FADED_RESIDUAL = 2.0, 0.1

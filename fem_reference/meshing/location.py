@@ -28,7 +28,7 @@ class Uncached:
 class LocatedPoints:
     """Points of shape (n,) in their triangles.
 
-    r_given : radii as given.  r : at least ``SAME_PLACE`` contact radii.  z : on interfaces exactly.
+    r_given : radii as given.  r : at least ``EDGE_SIZE`` contact radii.  z : on interfaces exactly.
     layer : layer of each point.  cells : triangle of (r, z).  X : its reference coordinates, (2, n).
     """
 
@@ -92,7 +92,7 @@ class Locator:
 
     def points(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> LocatedPoints:
         """The points (r, z) of shape (n,) with their triangles inside ``layer``."""
-        near = np.maximum(r, chosen.SAME_PLACE * self.mesh.contact_radius)
+        near = np.maximum(r, chosen.EDGE_SIZE * self.mesh.contact_radius)
         return LocatedPoints(self, r, near, z, layer, *self.triangles(near, z, layer))
 
     def triangles(self, r: np.ndarray, z: np.ndarray, layer: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -65,8 +65,8 @@ def _potential_series(x: Array, y: Array, z: float, a: float) -> Array:
 
 
 def _potential_corner(X: Array, Y: Array, z: float) -> Array:
-    """V."""
-    sx, sy = np.maximum(X * X + z * z, numbers.TINY), np.maximum(Y * Y + z * z, numbers.TINY)
-    rho = np.sqrt(np.maximum(sx + Y * Y, numbers.TINY))
+    """V; X and Y lie half a side beside the axes."""
+    sx, sy = X * X + z * z, Y * Y + z * z
+    rho = np.sqrt(sx + Y * Y)
     V: Array = X * np.asinh(Y / np.sqrt(sx)) + Y * np.asinh(X / np.sqrt(sy)) - z * np.atan2(X * Y, z * rho)
     return V

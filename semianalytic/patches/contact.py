@@ -224,7 +224,7 @@ def _choose_preconditioner(state: _State, problem: Problem) -> None:
         _find_gap_of_pressure(state, problem)
         state.contact = _ContactSet(state.p > 0, problem)
         state.set_updates = numbers.PREDICTED_UPDATES
-    elif state.iterations != numbers.PREDICTED_UPDATES:
+    elif state.iterations != numbers.EXTENDED_ITERATIONS:
         return
     _find_P_one(state, problem)
     state.on_set = 0
@@ -234,7 +234,7 @@ def _precondition(r: Array, extended: Array, state: _State, problem: Problem) ->
     """z = P r on the contact set, of r or of its extension; r itself once P is dropped."""
     if state.iterations >= numbers.PRECONDITIONED_ITERATIONS:
         return r
-    z = problem.precondition(extended if state.iterations < numbers.PREDICTED_UPDATES else r)
+    z = problem.precondition(extended if state.iterations < numbers.EXTENDED_ITERATIONS else r)
     return z * state.contact.inside
 
 

@@ -9,7 +9,7 @@ import semianalytic
 from semianalytic import numbers
 from semianalytic.coefficients import influence
 from semianalytic.edge import smooth_edge
-from semianalytic.edge.edge_shape import EVEN, FULL, ROUND, Shape
+from semianalytic.edge.edge_shape import FULL, Shape
 from semianalytic.inputs import Body, Numerics
 from semianalytic.patches import convolution
 from semianalytic.patches.grid import Grid
@@ -63,7 +63,7 @@ class Ellipse:
         return end(self.a, self.turn), end(self.b, self.turn + np.pi / 2)
 
 
-def hertz(n, quarter, semi_axes=(1.0, 1.0), harmonics=EVEN):
+def hertz(n, quarter, semi_axes=(1.0, 1.0), harmonics=numbers.EVEN):
     """Deflection [m], load [N] and load of the patch means under a shape that is Hertz's; E* = p0 = 1."""
     grid, body = Grid(n, 2.24 * max(semi_axes) / n, quarter), Body((), (1.0, 0.0), 0.0)
     b = np.eye(1, len(harmonics))
@@ -94,7 +94,7 @@ def test_deflection_by_parts_is_hertzs_on_a_quarter_as_on_the_whole(n):
     assert np.abs(u - exact)[inside].max() < 2e-6 * np.pi / 2 * (257 / n) ** 1.75
     assert load == pytest.approx(2 / 3 * np.pi, rel=4e-8 * (257 / n) ** 1.5)
     assert of_means == pytest.approx(load, rel=1e-12)
-    for harmonics in (EVEN, ROUND):
+    for harmonics in (numbers.EVEN, numbers.ROUND):
         _, quarter, *loads = hertz(n, quarter=True, harmonics=harmonics)
         np.testing.assert_allclose(quarter, u, rtol=0, atol=1e-14)
         assert loads == pytest.approx([load, load], rel=1e-13)

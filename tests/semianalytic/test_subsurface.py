@@ -7,6 +7,7 @@ import pytest
 from numpy.polynomial import legendre
 from scipy.special import ellipeinc, ellipkinc, jv, spherical_jn
 
+from semianalytic import numbers
 from semianalytic.coefficients.frf import displacement_frf, stress_frf
 from semianalytic.coefficients.point_force import (
     combine_displacement,
@@ -15,7 +16,7 @@ from semianalytic.coefficients.point_force import (
     half_space_displacement,
     half_space_stress,
 )
-from semianalytic.edge.edge_shape import ACROSS, EVEN, FULL, Shape
+from semianalytic.edge.edge_shape import FULL, Shape
 from semianalytic.inputs import Body
 from semianalytic.stresses import subsurface
 from semianalytic.stresses.rings import Disc, SmoothContour, rings_of
@@ -59,7 +60,7 @@ def displacement(x, y, z, layer=0, *, pressure=DISC, body=BARE):
 
 
 def ellipse(a, b, centre=(0.0, 0.0)):
-    return Shape(centre, (a, b), EVEN, np.zeros(len(EVEN)), np.eye(1, len(EVEN)))
+    return Shape(centre, (a, b), numbers.EVEN, np.zeros(len(numbers.EVEN)), np.eye(1, len(numbers.EVEN)))
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.7, 2.5])
@@ -69,7 +70,7 @@ def test_sliding_sphere_is_hamiltons_at_the_edge_too(angle):
     np.testing.assert_allclose(displacement(*at), HERTZ.displacement(*at), rtol=0, atol=RINGS)
 
 
-@pytest.mark.parametrize("harmonics", [EVEN, FULL])
+@pytest.mark.parametrize("harmonics", [numbers.EVEN, FULL])
 @pytest.mark.parametrize("r", [R, np.zeros(1)], ids=["off the axis", "on the axis"])
 def test_contour_that_is_a_circle_is_the_disc(r, harmonics):
     b = np.zeros((1, len(harmonics)))
@@ -148,7 +149,7 @@ def test_stress_below_a_contour_is_the_sum_of_its_point_forces(shape, atol):
     np.testing.assert_allclose(found, by_point_forces(x, y, z, shape), rtol=0, atol=atol)
 
 
-@pytest.mark.parametrize("harmonics", [EVEN, ACROSS])
+@pytest.mark.parametrize("harmonics", [numbers.EVEN, numbers.ACROSS])
 def test_rings_of_mirror_images_are_those_without_regard_to_symmetry(harmonics):
     rng = np.random.default_rng(3)
     b = 0.05 * rng.standard_normal((4, len(harmonics)))

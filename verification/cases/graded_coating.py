@@ -54,6 +54,9 @@ class ModulusTable(Strict):
         return f"{self.E[0] / 1e9:.4g} to {self.E[-1] / 1e9:.4g} GPa, {len(self.E)} depths"
 
 
+Graded = GradedCourse | ModulusTable  # every kind of E that varies with the depth
+
+
 def _kind(given: Any) -> str:
     if isinstance(given, ModulusTable) or (isinstance(given, dict) and "depth" in given):
         return "table"
@@ -68,7 +71,7 @@ Modulus = Annotated[
 ]
 
 
-def moduli(E: float | GradedCourse | ModulusTable, layers: int) -> tuple[float, ...]:
+def moduli(E: float | Graded, layers: int) -> tuple[float, ...]:
     """The modulus [Pa] of each of ``layers`` equal sub-layers from the surface down."""
     s = (np.arange(layers) + 0.5) / layers
     if isinstance(E, ModulusTable):

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from verification.cases.graded_coating import LAYERS, GradedCourse, Modulus, ModulusTable, moduli
+from verification.cases.graded_coating import LAYERS, Graded, Modulus, moduli
 from verification.cases.toml_file import Poisson, Positive, Strict
 from verification.cases.unit_numbers import AnyPascals, Metres, Pascals, is_of
 from verification.problem.array_types import Ball, Coatings
@@ -85,7 +85,7 @@ class Coating(Limited):
 
     @model_validator(mode="after")
     def _one_of_each(self) -> "Coating":
-        if (self.layers is None) == isinstance(self.E, GradedCourse | ModulusTable):
+        if (self.layers is None) == isinstance(self.E, Graded):
             raise ValueError(
                 "is graded: give layers, the number of its sub-layers, such as 20, beside the course of E"
                 if self.layers is None
@@ -114,7 +114,7 @@ class Coating(Limited):
     @property
     def course(self) -> str:
         """E of a graded coating as it was given; "" of any other."""
-        return self.E.words if isinstance(self.E, GradedCourse | ModulusTable) else ""
+        return self.E.words if isinstance(self.E, Graded) else ""
 
     def moduli(self, over: int = 1) -> tuple[float, ...]:
         """The modulus [Pa] of each of its sub-layers, whose number is divided by ``over``."""

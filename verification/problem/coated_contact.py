@@ -163,9 +163,11 @@ class PrescribedLoad:
 
 
 def keywords(problem: Any) -> dict[str, Any]:
-    """The fields of a problem by name, as keywords of a solver; no ``indenter`` of a sphere."""
-    found = {f.name: getattr(problem, f.name) for f in fields(problem)}
-    return found if found.get("indenter") else {k: v for k, v in found.items() if k != "indenter"}
+    """The fields of a problem by name, as keywords of a solver; a field that has its default is left out.
+
+    So a solver that does not know a field solves all problems that do not use it.
+    """
+    return {f.name: value for f in fields(problem) if (value := getattr(problem, f.name)) != f.default}
 
 
 @dataclass(frozen=True)
