@@ -36,9 +36,11 @@ ROWS = 2.6  # of triangles across a coating next to the contact
 # Films buried at many times their thickness are left to flat triangles: least height of a row over the size.
 LEAST_ROW = 0.25
 # Smallest triangle, at the contact edge, over the contact radius. Places nearer to each other coincide: with
-# the axis, where u/r is the limit from outside, exact to its square; with a jump of a prescribed pressure,
-# where it has no value; over a triangle, with an interface.
+# the axis, where u/r is the limit from outside, exact to its square; over a triangle, with an interface. An edge that
+# moves less is at rest.
 EDGE_SIZE = 1e-7
+# Distance from a jump of a prescribed pressure, over the radius of the load, within which it has no value.
+AT_SINGULAR = 1e-8
 # Size of a triangle in the fan: this power of its distance from the edge. What the innermost triangles miss
 # counts as the root of the distance.
 FAN_POWER = 0.94
@@ -92,8 +94,8 @@ WEIGHT = 5
 MORE, FIRM = 4, 1e3  # degree of the conditions beyond that of the pressure; weight of the load
 CORRECTING = 96  # of the harmonics, that correct the pressure
 LARGEST_MOVE = 0.2  # of the edge in one step
-# Change of the edge in the last step; the same on the rough mesh, and the most in a step that was the last.
-EDGE_AT_REST, EDGE_CLOSE = 1e-7, 1e-4
+# Change of the edge on the rough mesh in the last step, and the most elsewhere in a step that was the last.
+EDGE_CLOSE = 1e-4
 # Of the peak, a negative pressure, and of the approach, a penetration: what elements may err by
 ALLOWED = 3e-3
 

@@ -171,7 +171,7 @@ class ElementSolution(PlainFields):
             return answer
         r, z = np.broadcast_arrays(np.hypot(x, y), np.asarray(z, dtype=float))
         away = np.min([np.hypot(r - one, z) for one in self.singular_radii], axis=0)
-        at = away <= chosen.EDGE_SIZE * self.contact_radius
+        at = away <= chosen.AT_SINGULAR * self.contact_radius
         return ElementAnswer(*(None if part is None else np.where(at, np.nan, part) for part in answer))
 
     def _number(self, body: str) -> int:

@@ -62,9 +62,9 @@ ROUGH, ROOMY = 49, 1.5
 LARGEST = 0.9
 # Length over width, beyond which a contact has more patches. [test_long_contacts]
 LONG = 8.0
-# Patches across a contact, by which the rough grid tells its width, and fewer than which are no answer.
-# [test_long_contacts]
-NARROW_WIDTH, RESOLVED_WIDTH = 4, 12
+# Patches that tell a width: across a contact on the rough grid, in a for a harmonic or a polynomial of its
+# shape; and fewer than which across a contact are no answer. [test_long_contacts]
+PATCHES_A_WIDTH, RESOLVED_WIDTH = 4, 12
 # Patches a side of the next grid over the last, where the accuracy asked is not met, half of those of grids
 # that only give the start, and the box that tests the domain over the box in use. [problems]
 FINER = 1.4
@@ -109,8 +109,8 @@ LAYER, THICK = 7.0, 100.0
 # film; even in y, beside its mirror image; even in y. [test_long_contacts]
 ROUND, EVEN, HALF = (0,), (0, 2, 4, 6, 8, 10, 12), (0, 1, 2, 3, 4, 5, 6, 7, 8)
 ACROSS = (0, 1, 2, 3, 4, 6, 8, 9, 10, 12)
-# The highest harmonic of a shape fitted to patches alone, or patches in a for each. [test_long_contacts]
-LOW_HARMONICS, PATCHES_A_WAVE = 6, 4.0
+# The highest harmonic of a shape fitted to few patches alone. [test_long_contacts]
+LOW_HARMONICS = 6
 # Patches in a, below which the edge is not resolved, and below which the next grid tries anew. [problems]
 NARROW_EDGE, FEW_PATCHES = 5, 32
 # t over which a pressure fitted near the edge alone fades to the inside; largest change of an axis in a fit.

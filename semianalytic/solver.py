@@ -180,7 +180,7 @@ def _shaped(
         extent = float(np.abs(found.nodes[loaded]).max()) + found.diagnostics.patch_size
         if extent <= half_width / 3:
             half_width = numbers.ROOMY * extent
-        elif sides.min() < numbers.NARROW_WIDTH and coarse.patches < numbers.LARGEST_GRID / numbers.FINER:
+        elif sides.min() < numbers.PATCHES_A_WIDTH and coarse.patches < numbers.LARGEST_GRID / numbers.FINER:
             coarse = replace(coarse, patches=odd(2 * coarse.patches))
         else:
             ratio = sides.max() / sides.min()

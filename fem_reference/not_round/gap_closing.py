@@ -126,7 +126,7 @@ def closed(
     height: Height,
     load: float,
     last: int,
-    enough: float = chosen.EDGE_AT_REST,
+    enough: float = chosen.EDGE_SIZE,
 ) -> Closed:
     """Contour and pressure whose gap below an indenter of ``height`` (x, y) vanishes; scaled units.
 

@@ -268,7 +268,7 @@ def solve_shape(
         return tuple(replace(one, far=widest) for one in scaled)
 
     def on_mesh(
-        reach: float, grid: ShapedGrid, begin: StarPressure, enough: float = chosen.EDGE_AT_REST
+        reach: float, grid: ShapedGrid, begin: StarPressure, enough: float = chosen.EDGE_SIZE
     ) -> Closed:
         """The contact [reach] on a mesh to the radius ``reach`` [m]."""
         start = begin.scaled(reach)

@@ -133,7 +133,7 @@ def _start(problem: LevelProblem, p: Array) -> Shape | None:
     highest = (
         np.inf
         if harmonics == edge_shape.FULL
-        else max(numbers.LOW_HARMONICS, min(shape.axes) / grid.d / numbers.PATCHES_A_WAVE)
+        else max(numbers.LOW_HARMONICS, min(shape.axes) / grid.d / numbers.PATCHES_A_WIDTH)
     )
     return shape.with_terms(_terms(shape, grid.d), highest)
 
@@ -164,7 +164,7 @@ def _terms(shape: Shape, d: float) -> int:
     finer = max(0.0, float(np.log(patches / numbers.USUAL_RADIUS) / np.log(1.4)))
     wanted = numbers.LAYERED[0] + numbers.LAYERED[1] * length + finer
     resolved = numbers.RESOLVED_TERMS * np.sqrt(e * length * patches)
-    return int(max(numbers.FEWEST_TERMS, min(wanted, patches / numbers.PATCHES_A_WAVE, resolved)))
+    return int(max(numbers.FEWEST_TERMS, min(wanted, patches / numbers.PATCHES_A_WIDTH, resolved)))
 
 
 def _near_influence(problem: LevelProblem) -> Array:

@@ -66,6 +66,7 @@ def _follows(value: ast.expr) -> bool:
     numbers = [
         node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, float)
     ]
+    value = value.args[0] if isinstance(value, ast.Call) and value.args else value  # np.array of a list
     return any(map(NAME.fullmatch, named)) or (
         isinstance(value, ast.List | ast.Dict) and all(one.is_integer() for one in numbers)
     )

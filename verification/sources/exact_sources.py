@@ -9,6 +9,8 @@ from verification.problem.loading_curve import LoadingCurve, Problem
 from verification.sources.source_record import RESPONSE, Kind, Source, Style
 
 CODE = "verification.sources.references"
+# Fields of a contact that the references know: what has another one is left to the methods.
+KNOWN = {"radius", "load", "coatings", "substrate", "friction", "ball", "indenter"}
 
 
 def solve_exactly(problem: Problem, numerics: Mapping[str, Any] | None = None) -> Any:
@@ -38,13 +40,13 @@ def hertz(problem: CoatedContact, numerics: Mapping[str, Any] | None = None) -> 
 
 def _exact_accepts(problem: Problem, kind: str) -> bool:
     """No sliding disc, whose stress is infinite at the rim."""
-    if isinstance(problem, CoatedContact) and problem.indenter is not None:
-        return False
+    if isinstance(problem, CoatedContact):
+        return problem.indenter is None and keywords(problem).keys() <= KNOWN
     return not (isinstance(problem, PrescribedLoad) and problem.friction)
 
 
 def _closed_accepts(problem: Problem, kind: str, *, sliding: bool) -> bool:
-    if not isinstance(problem, CoatedContact):
+    if not isinstance(problem, CoatedContact) or keywords(problem).keys() - KNOWN:
         return False
     if problem.indenter is not None:
         ellipsoid = problem.indenter[0] == "ellipsoid" and kind == "scalar"
