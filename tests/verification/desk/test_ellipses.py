@@ -34,8 +34,11 @@ def stress(found, quantity, body="flat"):
 
 
 def test_a_ball_in_its_race_has_hertzs_half_axes_and_johnsons_tension():
-    """K. L. Johnson, Contact Mechanics, 1985, section 4.2: sigma_r = -sigma_t at the ends, of both bodies."""
-    problem, found = solved("4.7625 mm, 4.7625 mm", "18.24 mm, -5.4 mm")
+    """Ball of 9.525 mm of a 6206 on its inner ring: pitch circle 46 mm, groove of 52 % of the ball.
+
+    K. L. Johnson, Contact Mechanics, 1985, section 4.2: sigma_r = -sigma_t at the ends, of both bodies.
+    """
+    problem, found = solved("4.7625 mm, 4.7625 mm", "18.2375 mm, -4.953 mm")
     exact = hertz(problem)
     assert found.numbers["peak_pressure"][0] == pytest.approx(exact.peak_pressure, rel=1e-5)
     for name, axis in zip(("half_axis_x", "half_axis_y"), exact.axes, strict=True):
@@ -93,6 +96,11 @@ def test_exchanging_the_axes_exchanges_the_stresses():
         (["--radii", "5 mm, 5 mm", "--ball", "10 mm, 210 GPa, 0.3"], "--ball with --radii"),
         (["--radii", "5 mm, 5 mm", "--ball-coating", "1 um, 200 GPa, 0.3"], "--ball"),
         (["--ball", "5 mm", "--against", "5 mm, 5 mm"], "--radii"),
+        (["--roller", "R = 5 mm"], '"R = 5 mm, crown 2 m"'),
+        (["--roller", "R = 5,5 mm, crown 2 m"], "decimals with a point"),
+        (["--roller", "R = 5 mm, crown flat"], "give one of them a crown"),
+        (["--roller", "d = 10 apples, crown 2 m"], "'apples'"),
+        (["--roller", "R = 5 mm, crown 2 m", "--radii", "5 mm, 2 m"], "give one"),
     ],
 )
 def test_radii_without_meaning_are_refused_in_one_line(words, named, tmp_path):
@@ -101,6 +109,18 @@ def test_radii_without_meaning_are_refused_in_one_line(words, named, tmp_path):
     assert named in done.stderr
     assert done.stderr.count("\n") == 1
     assert done.stdout == ""
+
+
+@pytest.mark.parametrize(
+    "words", ["R = 5 mm, crown 2 m", "5 mm, 2 m", "d = 10 mm, crown R = 2 m", "D 0.01, crown 2"]
+)
+def test_a_roller_is_a_body_with_two_radii(words):
+    one, other = (
+        case_text(STEEL, "5 N", STEEL, against="20 mm, flat", **{name: text})
+        for name, text in (("roller", words), ("radii", "5 mm, 2 m"))
+    )
+    one, other = (parse_case(text.encode(), Path("options")).problem for text in (one, other))
+    assert one == other
 
 
 def test_radii_of_the_other_body_belong_to_an_ellipsoid():
