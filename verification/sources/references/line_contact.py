@@ -9,7 +9,7 @@ sin(kx) gives 2 (-1)^i J_{2i+1}(kb), it is, with t = kb,
     d_i + 2 (-1)^i sum_j (-1)^j (2j + 1) d_j int_0^inf [M(t/b) - 1] J_{2i+1}(t) J_{2j+1}(t) dt/t = r_i,
 
 r_0 = E* b/2R, all others 0. Uncoated, M = 1, the pressure is that of Johnson, (4.37) to (4.45). E* and M are
-those of both bodies (``solids_in_contact``). Stresses are transforms of the amplitudes (``layered_half_space``)
+those of both bodies, ``solids_in_contact``. Stresses are transforms of those of ``layered_half_space``:
 
     sigma_xx, sigma_zz = 1/pi int (ll, S) phat cos(kx) dk,   sigma_xz = -1/pi int T phat sin(kx) dk,
     sigma_yy = nu (sigma_xx + sigma_zz);
