@@ -69,7 +69,7 @@ def test_exchanging_the_axes_changes_nothing_without_friction():
 
 def test_the_forecast_knows_that_ellipses_take_longer(tmp_path):
     _, seconds = forecast(ellipse((8e-3, 4e-3), [0.0]), tmp_path)
-    assert seconds > 60
+    assert seconds > 30
 
 
 def test_indenters_that_are_no_ellipsoids_are_refused():
