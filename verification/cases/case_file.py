@@ -102,6 +102,9 @@ def _straight(given: Any, checked: Callable[[Any], float]) -> float:
 Bend = Annotated[AnyMetres, WrapValidator(_straight)]  # negative of a concave surface
 
 
+MOST_UNLIKE = 4000.0  # radii of the gap over each other; the contact is 150 times as long as wide
+
+
 class IndenterEntry(Strict):
     """An indenter that is no sphere, see ``indenter_shape``.
 
@@ -127,12 +130,16 @@ class IndenterEntry(Strict):
             for axis, *bends in zip("xy", self.radii, self.against or (inf, inf), strict=True):
                 if sum(1 / R for R in bends) <= 0:
                     both = " and ".join("flat" if isinf(R) else f"{1e3 * R:g} mm" for R in bends)
-                    line = "a contact along a line is not solved; give one of them a crown, such as 2 m"
-                    bent = "a convex surface has a positive radius, one around it a larger negative one"
-                    why = line if all(map(isinf, bends)) else bent
-                    raise ValueError(
-                        f"has no gap that opens along {axis}, where the radii of curvature are {both}; {why}"
-                    )
+                    why = "a convex surface has a positive radius, one around it a larger negative one"
+                    if all(map(isinf, bends)):
+                        why = "a contact along a line is not solved; give a crown, such as 2 m"
+                    said = f"has no gap that opens along {axis}, where the radii of curvature are {both}"
+                    raise ValueError(f"{said}; {why}")
+            if (unlike := max(self.pair[1]) / min(self.pair[1])) > MOST_UNLIKE:
+                raise ValueError(
+                    f"leaves a gap whose radii along x and y differ by a factor of {unlike:.3g}, beyond "
+                    f"{MOST_UNLIKE:g}; give a smaller crown, or take the contact along a line"
+                )
         return self
 
     @property

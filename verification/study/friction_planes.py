@@ -96,7 +96,7 @@ class DepthLine:
         return _signed(self.fine, x, friction)
 
     def uncertainty(self, x: float, friction: float) -> Array:
-        """Uncertainty [Pa] at ``x``, (4,): that of the solution plus 1/8 of the error with half the samples."""
+        """Uncertainty [Pa] at ``x``, (4,): of the solution, and 1/8 of the error with half the samples."""
         if not self.parts.stated:
             return np.full(4, np.nan)
         i = int(np.clip(np.searchsorted(self.knots, abs(x)), 1, self.knots.size - 1))
