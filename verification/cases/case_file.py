@@ -47,6 +47,7 @@ from verification.sources.load_of_approach import load_of_approach, own_radius
 from verification.sources.source_registry import METHODS, sources_of
 
 CONTRAST = 1e4  # of a layer over those below it, where digits are lost
+MOST_UNLIKE = 4000.0  # radii of the gap over each other; the contact is 150 times as long as wide
 SUPPORTED = (1e-3, 1e3)  # thickness over contact radius, by both methods
 CASES = Path(__file__).parent / "shipped" / "contact"
 SHAPES = Path(__file__).parent / "shipped" / "shapes"
@@ -100,9 +101,6 @@ def _straight(given: Any, checked: Callable[[Any], float]) -> float:
 
 
 Bend = Annotated[AnyMetres, WrapValidator(_straight)]  # negative of a concave surface
-
-
-MOST_UNLIKE = 4000.0  # radii of the gap over each other; the contact is 150 times as long as wide
 
 
 class IndenterEntry(Strict):
