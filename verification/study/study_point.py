@@ -157,7 +157,9 @@ def _rows(
     rows = []
     # of an ellipse the half axis takes the place of the radius; without friction in both planes of symmetry
     axes = (False,) if problem.friction else (False, True)
-    sides = [AlongAxis(solution, across=across) for across in axes if problem.elliptical] or [solution]
+    sides: list[Any] = [AlongAxis(solution, across=across) for across in axes if problem.elliptical] or [
+        solution
+    ]
     views = [quantities(side, problem, frictions, residual, swept) for side in sides]
     for stress, f in product(residual, frictions):
         row: dict[str, Any] = {"friction": f, "status": "solved", "failure": None, **common}

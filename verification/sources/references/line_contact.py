@@ -122,7 +122,8 @@ class LineContact:
         layered = of(LayeredHalfSpace(self.coatings, self.substrate, k))
         if z > 0:
             return layered
-        return layered - of(LayeredHalfSpace((), (*self.coatings, self.substrate)[0][:2], k))
+        E, nu = self.coatings[0][:2]
+        return np.asarray(layered - of(LayeredHalfSpace((), (E, nu), k)))
 
 
 def line_contact(
@@ -153,7 +154,7 @@ def line_contact(
             J = jv(orders, k[:, None] * b) * (-1.0) ** np.arange(count)
             excess = weight / k * (compliance(solids, E_star, k) - 1)
             matrix += 2 * (J.T * excess) @ J * orders
-        return np.linalg.solve(matrix, right)
+        return np.asarray(np.linalg.solve(matrix, right))
 
     def excess_load(log_b: float) -> float:
         b = float(np.exp(log_b))
