@@ -11,7 +11,9 @@ from verification.cases.case_file import parse_case
 from verification.cases.toml_file import CaseError
 from verification.desk.case_wording import case_text
 from verification.desk.contact_answer import answer
+from verification.sampling.along_axis import AlongAxis
 from verification.sources.exact_sources import hertz
+from verification.sources.source_registry import solvers
 
 STEEL = "210 GPa, 0.3"
 
@@ -58,6 +60,22 @@ def test_a_ball_in_its_race_has_hertzs_half_axes_and_johnsons_tension():
             assert abs(at.value - expected) <= max(at.uncertainty, 1e-5 * exact.peak_pressure)
         at = stress(found, "sigma_yy", body)
         assert (at.x, abs(at.y)) == (0.0, pytest.approx(a, rel=1e-4))
+
+
+@pytest.mark.parametrize(
+    ("radii", "against", "load", "ratio"),
+    [("460 mm, flat", "flat, 254 mm", "100 kN", 1.5), ("5 mm, 470 mm", "20 mm, flat", "100 N", 20.0)],
+    ids=["wheel on rail", "barrel on ring"],
+)
+def test_wheel_and_barrel_are_hertz(radii, against, load, ratio):
+    problem = case_of(radii, against, load=load).problem
+    exact, found = hertz(problem), solvers()["semianalytic"](problem, {})
+    assert exact.a / exact.b == pytest.approx(ratio, rel=0.02)
+    value, U = found.sample(None, "peak_pressure")
+    assert abs(value - exact.peak_pressure) <= U <= 1e-5 * value
+    for axis, across in zip(exact.axes, (False, True), strict=True):
+        value, U = AlongAxis(found, across=across).sample(None, "contact_radius")
+        assert abs(value - axis) <= U <= 1e-4 * value
 
 
 def test_the_gap_alone_counts():
