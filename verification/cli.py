@@ -113,7 +113,10 @@ def _remedy(text: str, command: Sequence[str]) -> str:
     if text.startswith("Unknown option") and unknown and unknown[1] in meant:
         return f"Try: {meant[unknown[1]]}"
     if "requires an argument" in text:
-        return "Give its value, which must be above 0; a word that begins with - is read as an option."
+        option = re.search(r"--[\w-]+", text)
+        return (
+            f"Give its value; one that begins with - needs an equals sign, {option[0] if option else ''}=..."
+        )
     if re.search(r"\d ?%", text):
         return "Write a share without %, such as 0.15."
     if re.search(r"\d,\d", text):

@@ -50,7 +50,7 @@ def _row(point, source, ratio, h, f, checked, failed):
         "coating_nu": 0.3, "thickness": h * A_H, "residual_stress": 0.0,
         "substrate_E": 210e9, "substrate_nu": 0.3, "friction": f,
         "modulus_ratio": ratio, "thickness_over_a_h": h, "a_h": A_H, "p_h": P_H, "delta_h": 1e-6,
-        "ball": "null", "numerics": "{}", "versions": "{}", "key": "0", "seconds": 0.1,
+        "ball": "null", "indenter": "null", "numerics": "{}", "versions": "{}", "key": "0", "seconds": 0.1,
     }  # fmt: skip
     if failed:
         return row

@@ -47,6 +47,7 @@ from verification.sources.load_of_approach import load_of_approach, own_radius
 from verification.sources.source_registry import METHODS, sources_of
 
 CONTRAST = 1e4  # of a layer over those below it, where digits are lost
+MOST_UNLIKE = 4000.0  # radii of the gap over each other; the contact is 150 times as long as wide
 SUPPORTED = (1e-3, 1e3)  # thickness over contact radius, by both methods
 CASES = Path(__file__).parent / "shipped" / "contact"
 SHAPES = Path(__file__).parent / "shipped" / "shapes"
@@ -127,10 +128,16 @@ class IndenterEntry(Strict):
             for axis, *bends in zip("xy", self.radii, self.against or (inf, inf), strict=True):
                 if sum(1 / R for R in bends) <= 0:
                     both = " and ".join("flat" if isinf(R) else f"{1e3 * R:g} mm" for R in bends)
-                    raise ValueError(
-                        f"has no gap that opens along {axis}, where the radii of curvature are {both}; a "
-                        "convex surface has a positive radius, a concave one around it a larger negative one"
-                    )
+                    why = "a convex surface has a positive radius, one around it a larger negative one"
+                    if all(map(isinf, bends)):
+                        why = "a contact along a line is not solved; give a crown, such as 2 m"
+                    said = f"has no gap that opens along {axis}, where the radii of curvature are {both}"
+                    raise ValueError(f"{said}; {why}")
+            if (unlike := max(self.pair[1]) / min(self.pair[1])) > MOST_UNLIKE:
+                raise ValueError(
+                    f"leaves a gap whose radii along x and y differ by a factor of {unlike:.3g}, beyond "
+                    f"{MOST_UNLIKE:g}; give a smaller crown, or take the contact along a line"
+                )
         return self
 
     @property
@@ -145,21 +152,24 @@ class IndenterEntry(Strict):
 
 
 class Sized(Strict):
-    """A problem with a ball of given ``radius`` or ``diameter``."""
+    """A problem with a ball of given ``radius`` or ``diameter``, or with an ``indenter`` that has radii."""
 
     radius: Metres | None = None
     diameter: Metres | None = None
+    indenter: IndenterEntry | None = None
 
     @model_validator(mode="after")
     def _one_size(self) -> "Sized":
-        radii = getattr(getattr(self, "indenter", None), "radii", None)
+        radii = self.indenter.radii if self.indenter else None
         if [self.radius, self.diameter, radii].count(None) != 2:
             raise ValueError("needs exactly one of radius or diameter")
         return self
 
     @property
     def size(self) -> float:
-        """The radius [m], which knows whether it was given with a unit."""
+        """The radius [m], which knows whether it was given with a unit; sqrt(R_x R_y) of an ellipsoid."""
+        if self.indenter is not None and self.indenter.radii is not None:
+            return float(prod(self.indenter.pair[1]) ** 0.5)
         if self.radius is not None:
             return self.radius
         half = (self.diameter or 0.0) / 2
@@ -169,7 +179,6 @@ class Sized(Strict):
 class _CaseProblem(Sized):
     load: Newtons | None = None
     approach: Metres | None = None
-    indenter: IndenterEntry | None = None
     friction: Friction = 0.0
     substrate: Material
     coatings: WholeCoatings = Field(default_factory=list)
@@ -240,10 +249,8 @@ class _CaseProblem(Sized):
         """The problem under a load; a thickness over a_h is that over the scale of both bodies uncoated."""
         ball, substrate = self.ball, (self.substrate.E, self.substrate.nu)
         indenter = self.indenter.pair if self.indenter else None
-        ellipsoid = indenter is not None and indenter[0] == "ellipsoid"
-        radius = float(prod(indenter[1]) ** 0.5) if indenter and ellipsoid else self.size
         uncoated = ball.bare if ball else None
-        bare = CoatedContact(radius, load, (), substrate, self.friction, uncoated, indenter)
+        bare = CoatedContact(self.size, load, (), substrate, self.friction, uncoated, indenter)
         given = ball.coated(bare.a_h, over) if ball else None
         return replace(bare, coatings=in_metres(self.coatings, bare.a_h, over), ball=given)
 

@@ -109,9 +109,10 @@ def likely_slips(problem: CoatedContact) -> str:
 
 def _numbers(problem: CoatedContact) -> Iterator[str]:
     """Lines for the numbers of the materials by themselves."""
-    if problem.radius > LARGEST_RADIUS:
-        yield f"radius = {prefixed(problem.radius, 'm')} is above {LARGEST_RADIUS:g} m" + _slip(
-            "radius", problem.radius, _LENGTH_UNITS, (1e-5, LARGEST_RADIUS), prefer="mm"
+    radius = min(problem.indenter[1]) if problem.indenter and problem.elliptical else problem.radius
+    if radius > LARGEST_RADIUS:
+        yield f"radius = {prefixed(radius, 'm')} is above {LARGEST_RADIUS:g} m" + _slip(
+            "radius", radius, _LENGTH_UNITS, (1e-5, LARGEST_RADIUS), prefer="mm"
         )
     for body in problem.bodies:
         seen, of = problem.seen_from(body), before(body)

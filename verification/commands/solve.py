@@ -81,6 +81,7 @@ def solve(
     *,
     ball: str | None = None,
     radii: str | None = None,
+    roller: str | None = None,
     against: str | None = None,
     load: str | None = None,
     approach: str | None = None,
@@ -109,8 +110,10 @@ def solve(
         file: A case file (.toml) or the name of a shipped case; or give the problem by options.
         ball: "RADIUS" of a rigid ball, "RADIUS, E, NU" of an elastic one: "10 mm, 210 GPa, 0.3"; the size may
             also be "d = DIAMETER".
-        radii: "R_X, R_Y" of a body that is no ball, such as "3.8 mm, 183 mm" of a roller with a crown; --ball
-            then is its solid alone, "210 GPa, 0.3" or "100Cr6". A concave surface has a negative radius.
+        radii: "R_X, R_Y" of a body that is no ball, such as "3.8 mm, 183 mm"; --ball then is its solid alone,
+            "210 GPa, 0.3" or "100Cr6". A concave surface has a negative radius.
+        roller: "R = 5 mm, crown 2 m" of a roller that rolls along x, in place of --radii "5 mm, 2 m"; --ball
+            is its solid likewise.
         against: "R_X, R_Y" of the body with the substrate where it is not flat: "18 mm, -4.9 mm" of a race
             with its groove; "flat" along an axis without curvature.
         load: "20 N"; bare numbers are SI here and in all other options.
@@ -138,6 +141,7 @@ def solve(
     given = (
         ball,
         radii,
+        roller,
         against,
         load,
         approach,
@@ -256,6 +260,7 @@ def _from_file(file: str, given: Sequence[Any]) -> Case:
 def _from_options(
     ball: str | None,
     radii: str | None,
+    roller: str | None,
     against: str | None,
     load: str | None,
     approach: str | None,
@@ -266,14 +271,14 @@ def _from_options(
     temperature_change: float | None,
     materials: Path,
 ) -> Case:
-    unsized = ball is None and radii is None
+    unsized = (ball, radii, roller) == (None, None, None)
     if unsized or substrate is None or (load is None and approach is None):
-        asked = "--ball or --radii, --load or --approach, and --substrate"
+        asked = "--ball, --radii or --roller, --load or --approach, and --substrate"
         raise CommandError(f"give a case file, or {asked}; see coatcheck solve --help")
     try:
         layers = coating or [], friction or 0.0, ball_coating or []
-        words = (ball, load, substrate, *layers, approach, materials, temperature_change, radii, against)
-        text = case_text(*words)
+        words = (ball, load, substrate, *layers, approach, materials, temperature_change)
+        text = case_text(*words, radii, against, roller)
     except ValueError as error:
         raise CommandError(str(error)) from None
     return parse_case(text.encode("utf-8", errors="replace"), Path("options"))

@@ -15,7 +15,8 @@ from functools import partial
 from pathlib import Path
 
 from verification.cases.materials import SHIPPED, plain_name, read_materials
-from verification.cases.unit_numbers import NUMBER
+from verification.cases.toml_file import is_number
+from verification.cases.unit_numbers import NUMBER, in_si
 
 _D, _R = r"d|D|dia\.?|diam\.?|diameter|Ø|ø|⌀", r"r|R|radius"
 _VALUE = rf"{NUMBER}\s*(?:[^\W\d_]\S*)?"
@@ -43,7 +44,7 @@ _STATED = re.compile(
 )
 STATED = '"strength 2 GPa", "residual -1.5 GPa", "yield 3 GPa", "adhesion 400 MPa"'
 Solid = Callable[[str, str], tuple[str, list[str]]]
-SOLID = "--ball with --radii"  # the solid alone
+SOLID = "--ball with --radii or --roller"  # the solid alone
 FORMS = {
     SOLID: ("E", "nu", "100Cr6 210 GPa, 0.3"),
     "--ball": ("radius", "E", "nu", "100Cr6 d = 6 mm, 210 GPa, 0.3"),
@@ -65,20 +66,24 @@ def case_text(
     temperature_change: float | None = None,
     radii: str | None = None,
     against: str | None = None,
+    roller: str | None = None,
 ) -> str:
     """The case file of a problem in words; coatings from the surface of each body inwards.
 
     approach : in place of the load, which then is None.   materials : the file of those given by name alone.
     temperature_change : since deposition [K], which needs "expansion 9e-6" of coatings and bodies.
     radii, against : of curvature, along x and y, of either body; the ball then is a solid alone, or rigid.
+    roller : "R = 5 mm, crown 2 m", which rolls along x, in place of the radii.
     Raises ValueError where the number of words is wrong, naming the option.
     """
     used: dict[str, str] = {}
     solid = partial(_solid, materials=materials, used=used)
     coated, elastic = ", ".join(_layers("--ball-coating", text, solid) for text in on_ball), ""
     sized = None
-    if radii is not None:
-        bends = [("radii", _bends("--radii", radii))]
+    if radii is not None and roller is not None:
+        raise ValueError(f'--roller "{roller}", --radii "{radii}": both are given; give one')
+    if radii is not None or roller is not None:
+        bends = [("radii", _bends("--radii", radii) if radii is not None else _crowned(str(roller)))]
         bends += [("against", _bends("--against", against))] if against is not None else []
         entries = ", ".join(f"{key} = [{', '.join(map(_toml, words))}]" for key, words in bends)
         sized = f'indenter = {{ shape = "ellipsoid", {entries} }}'
@@ -88,9 +93,9 @@ def case_text(
         elif on_ball:
             raise ValueError(f'--ball-coating "{on_ball[0]}": give the solid below it too, --ball "E, NU"')
     elif against is not None:
-        raise ValueError(f'--against "{against}": give the radii of the other body too, --radii "R_x, R_y"')
+        raise ValueError(f'--against "{against}": give the radii of the other body too, --radii or --roller')
     elif ball is None:
-        raise ValueError("give --ball or --radii")
+        raise ValueError("give --ball, --radii or --roller")
     elif "," in ball or on_ball or _named(ball.strip())[0]:
         called, (size, *words) = solid("--ball", ball)
         E, nu = map(_toml, words)
@@ -129,13 +134,25 @@ def _sized(word: str) -> str:
     return f"{key} = {_toml(size)}"
 
 
-def _bends(option: str, text: str) -> list[str]:
+def _bends(option: str, text: str, needs: str = 'R_x, R_y, 2 parts, such as "3.8 mm, 183 mm"') -> list[str]:
     """Both radii of curvature of a body."""
     words = [word.strip() for word in text.split(",")]
-    if len(words) != 2:
+    if len(words) != 2 or not all(words):
         comma = "; write decimals with a point, such as 0.3" if _COMMA.search(text) else ""
-        raise ValueError(f'{option} "{text}": give R_x, R_y, 2 parts, such as "3.8 mm, 183 mm"{comma}')
+        raise ValueError(f'{option} "{text}": give {needs}{comma}')
     return words
+
+
+def _crowned(text: str) -> list[str]:
+    """Both radii of curvature of a roller, whose size may be a diameter: "d = 10 mm, crown 2 m"."""
+    size, crown = _bends("--roller", text, 'R, crown, 2 parts, such as "R = 5 mm, crown 2 m"')
+    key, word = _size(size)
+    if key == "diameter":
+        try:
+            word = repr((float(word) if is_number(word) else in_si(word, "m")) / 2)
+        except ValueError as error:
+            raise ValueError(f'--roller "{text}": {error}, not {word!r}') from None
+    return [word, re.sub(rf"^crown\s*(?:{_R})?\b\s*=?\s*", "", crown)]
 
 
 def _named(word: str) -> tuple[str, str]:

@@ -12,7 +12,7 @@ from verification.cases.drawn_ranges import (
     THICKNESS,
 )
 from verification.problem.coated_contact import CoatedContact
-from verification.problem.display_units import Units, prefixed
+from verification.problem.display_units import Units, prefixed, radii_text
 from verification.problem.point_answers import BALL, FLAT
 from verification.sources.load_of_approach import own_radius
 
@@ -58,9 +58,9 @@ def described(case: Case, *, every: bool = True) -> list[str]:
     """The problem, a line for each body, load and coating; of equal coatings the first, unless ``every``."""
     problem, units = case.problem, units_of(case.problem)
     kind = "rigid" if problem.ball is None else _solid(*problem.ball[:2])
-    size = f"indenter    {_size(problem)}"
+    size = f"indenter    {radii_text(problem)}"
     if not problem.elliptical:
-        size = f"ball        {_size(problem)} (diameter {prefixed(2 * problem.radius, 'm')})"
+        size = f"ball        {radii_text(problem)} (diameter {prefixed(2 * problem.radius, 'm')})"
     lines = [f"{size}, {kind}; {_pressed(problem, units)}"]
     if case.approach is not None:
         lines.append(
@@ -92,15 +92,7 @@ def described(case: Case, *, every: bool = True) -> list[str]:
 
 def conditions(problem: CoatedContact) -> str:
     """Ball, load and friction in one line."""
-    return f"{_size(problem)}, {_pressed(problem, units_of(problem))}"
-
-
-def _size(problem: CoatedContact) -> str:
-    """The radius, or those of the gap along x and y."""
-    if problem.indenter is None or not problem.elliptical:
-        return f"R = {prefixed(problem.radius, 'm')}"
-    along, across = (prefixed(R, "m") for R in problem.indenter[1])
-    return f"R_x = {along}, R_y = {across}"
+    return f"{radii_text(problem)}, {_pressed(problem, units_of(problem))}"
 
 
 def units_of(problem: CoatedContact) -> Units:

@@ -1,6 +1,6 @@
 """Generated blocks of pages: ``{generated} name`` is replaced by what ``BLOCKS[name]`` returns.
 
-Every number comes from the baseline or a record of this version.
+Every number comes from the baseline, a record of this version, or a solve when the manual is built.
 """
 
 import re
@@ -17,6 +17,7 @@ from verification.evidence.enclosure_record import read_record as read_enclosure
 from verification.evidence.fault_record import read_record
 from verification.guests.pages import guests_section
 from verification.manual.baseline_numbers import FOLDER, baseline, largest, points, stored
+from verification.manual.line_limit import line_limit
 from verification.manual.markdown_text import paragraphs, shown, symbol, table, text
 from verification.manual.tour_output import WORKED, solved
 from verification.page.number_text import scientific
@@ -234,6 +235,7 @@ _ALL: tuple[Callable[[], str], ...] = (
     citation,
     history,
     solved,
+    line_limit,
     enclosures,
     assumption_costs,
 )

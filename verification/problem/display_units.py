@@ -56,6 +56,14 @@ def prefixed(value: float, unit: str, digits: int = 4) -> str:
     return f"{value / 10.0**power:.{digits}g} {_PREFIXES[power]}{unit}"
 
 
+def radii_text(problem: CoatedContact) -> str:
+    """The radius of the ball, or the radii of the gap along x and y under an ellipsoid."""
+    if problem.indenter is None or not problem.elliptical:
+        return f"R = {prefixed(problem.radius, 'm')}"
+    along, across = (prefixed(R, "m") for R in problem.indenter[1])
+    return f"R_x = {along}, R_y = {across}"
+
+
 def _first(
     below: Iterable[tuple[float, str, float]], value: float, other: tuple[str, float]
 ) -> tuple[str, float]:

@@ -19,6 +19,7 @@ from verification.problem.quantity import von_mises
 from verification.study.friction_planes import (
     XX,
     XZ,
+    YY,
     ZZ,
     DepthLine,
     Parts,
@@ -66,6 +67,7 @@ def quantities(
     solution : of ``problem``, which is coated, at friction 1, or at 0 where no other is asked for. Of several
     coatings and interfaces the largest counts.
     residual : equibiaxial stresses [Pa] of coating ``swept``, each added to sigma_xx, sigma_yy within it.
+    Below an ellipse, whose tension across its long axis may be the larger one, sigma_yy counts as sigma_xx.
     A tensile stress that is nowhere positive has value 0 and position NaN. Without friction, where the field
     is symmetric in x, the position is on the trailing side.
     Raises ValueError where a friction is given and the solution has none, or what ``solution.stress`` raises.
@@ -76,10 +78,11 @@ def quantities(
     z, n = problem.interfaces, len(problem.coatings)
     tops, bases = outer_planes(parts, z, z[0])
     inner = [inner_planes(parts, z, layer) for layer in range(n + 1)]
+    tension: Measure = (lambda s: s[: YY + 1].max(axis=0)) if problem.elliptical else lambda s: s[XX]
     lines: dict[str, tuple[list[DepthLine], Measure]] = {
-        "sigma_xx_surface": (tops[:1], lambda s: s[XX]),
-        "sigma_xx_base": (bases, lambda s: s[XX]),
-        "sigma_xx_substrate": (tops[-1:], lambda s: s[XX]),
+        "sigma_xx_surface": (tops[:1], tension),
+        "sigma_xx_base": (bases, tension),
+        "sigma_xx_substrate": (tops[-1:], tension),
         "sigma_xz_interface": (bases, lambda s: np.abs(s[XZ])),
         "sigma_zz_interface": (bases, lambda s: s[ZZ]),
     }

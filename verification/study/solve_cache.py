@@ -26,6 +26,7 @@ _SEARCH = (
     "verification.sources.method_sources",
     "verification.sources.exact_sources",
     "verification.sources.limit_extrapolation",
+    "verification.sampling.along_axis",
     "verification.sampling.largest_tension",
     "verification.judging.invariants.companion_uncertainty",
     "verification.running.case_result",

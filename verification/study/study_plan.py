@@ -1,12 +1,4 @@
-"""The plan of a study: its TOML file as a sequence of solves.
-
-The thicknesses of a range {from, to, count} are denser about its geometric middle, where the stresses change
-from those of the bare substrate to those of the bulk coating:
-
-    h = sqrt(from to) (to/from)^((3 t + 2 t^3)/10),   t = -1 .. 1 in equal steps
-
-so that neighbours differ by 0.6 of an equal ratio's step (in log h) in the middle, by 1.8 of it at the ends.
-"""
+"""The plan of a study: its TOML file as a sequence of solves."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -16,16 +8,17 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, model_validator
 
 from verification.cases import solid_schema
 from verification.cases.case_file import SUPPORTED, Sized, refuse_unfit_scales
 from verification.cases.plausibility import Limits, likely_slips, residual_warnings, warnings_of
 from verification.cases.solid_schema import BallEntry, Coating, Limited, Material, in_metres
-from verification.cases.toml_file import NO_SOURCE, CaseError, Positive, Strict, Text, read_bounded, read_toml
-from verification.cases.unit_numbers import Metres, Newtons, Units, units_of
+from verification.cases.toml_file import NO_SOURCE, CaseError, Strict, Text, read_bounded, read_toml
+from verification.cases.unit_numbers import Newtons, Units, units_of
 from verification.problem.array_types import Ball, Coatings
 from verification.problem.coated_contact import CoatedContact
+from verification.problem.indenter_shape import Indenter
 from verification.problem.point_answers import FLAT
 from verification.running.json_records import plain
 from verification.sources.load_of_approach import own_radius
@@ -33,9 +26,9 @@ from verification.sources.source_registry import METHODS
 from verification.study.choice.failure_criteria import Criteria
 from verification.study.solve_cache import solve_key
 from verification.study.study_table import SOURCES
+from verification.study.sweep_values import MOST_POINTS, Range, Sweep, thicknesses_between
 
 STUDIES = Path(__file__).parent.parent / "cases" / "shipped" / "studies"
-MOST_POINTS = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -75,7 +68,7 @@ class Study:
     uncertainty; {} where none is graded.
     residual : stress [Pa] of the coating of each modulus, () for none.
     cross_check : every point whose number is a multiple is also solved by the other sources; 0 none.
-    ball : None is rigid, or as of CoatedContact.
+    ball : None is rigid, or as of CoatedContact.   indenter : an ellipsoid in place of the sphere, likewise.
     numerics : each source's own keywords.  criteria : of the preferable thickness.  text : the file.
     source : where its numbers come from.
     warnings : of implausible numbers, a line each.   hardness : [Pa] by the keys of the file.
@@ -95,6 +88,7 @@ class Study:
     asked_from: float | None = None
     residual: tuple[float, ...] = ()
     ball: Ball | None = None
+    indenter: Indenter | None = None
     held: Coatings = ()
     swept: int = 0
     halved: dict[str, Any] = field(default_factory=dict)
@@ -111,7 +105,9 @@ class Study:
     @property
     def bare(self) -> CoatedContact:
         """The contact at ``load`` without coatings on the flat."""
-        return CoatedContact(self.radius, self.load, (), self.substrate, ball=self.ball)
+        return CoatedContact(
+            self.radius, self.load, (), self.substrate, ball=self.ball, indenter=self.indenter
+        )
 
     @property
     def points(self) -> int:
@@ -148,8 +144,8 @@ class Study:
             residual = [stress * (load / W) ** (1 / 3) for _, W in places] if stress else [0.0]
             step = len(places) * len(self.frictions)
             checked = self.cross_check and -(-first // self.cross_check) * self.cross_check < first + step
-            # Of thin films in a stack the exact reference takes minutes.
-            checks = METHODS if self.held else SOURCES
+            # Of thin films in a stack the exact reference takes minutes; an ellipse it does not solve.
+            checks = METHODS if self.held or self.indenter else SOURCES
             for source in checks if checked else SOURCES[:1]:
                 request = {
                     "source": source,
@@ -163,21 +159,10 @@ class Study:
                     "ball": plain(self.ball),
                     "frictions": list(self.frictions),
                     **({"halved": self.halved} if self.halved else {}),
+                    **({"indenter": plain(self.indenter)} if self.indenter else {}),
                 }
                 yield Solve(first, request, places)
             first += step
-
-
-def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...]:
-    """``count`` values from ``low`` to ``high`` by the formula of this file, the ends as they are given."""
-    if count == 1:
-        return (low,)
-    t = np.linspace(-1, 1, count)
-    values = np.sqrt(low * high) * (high / low) ** ((3 * t + 2 * t**3) / 10)
-    return (low, *(float(v) for v in values[1:-1]), high)
-
-
-Values = Annotated[list[Positive], Field(min_length=1, max_length=100_000)]
 
 
 class _SweptProblem(Sized):
@@ -204,6 +189,8 @@ class _SweptProblem(Sized):
                 raise ValueError(f"has coating {i}, which is not swept: give its E, and no residual stress")
         if sum(not one.is_sized for one in self.coatings) != bool(self.coatings):
             raise ValueError("needs every thickness of its coatings but that of the one to be swept")
+        if self.indenter is not None and self.indenter.radii is None:
+            raise ValueError(f"has indenter {self.indenter.shape!r}; a study sweeps balls and ellipsoids")
         if self.varied.layers or self.varied.is_sized:
             raise ValueError("has a swept coating: leave out its thickness and layers, give one E or none")
         return self
@@ -254,55 +241,6 @@ class _SweptProblem(Sized):
         return any(one.layers for one in (*self.coatings, *(self.ball.coatings if self.ball else ())))
 
 
-Lengths = Annotated[list[Metres], Field(min_length=1, max_length=100_000)]
-
-
-class _Range(Strict):
-    start: Annotated[Positive, Field(alias="from")]
-    to: Positive
-    count: Annotated[int, Field(ge=1, le=100_000)]
-
-    @model_validator(mode="after")
-    def _upwards(self) -> "_Range":
-        if not self.start < self.to:
-            raise ValueError(f"runs from {self.start:g} to {self.to:g}; give from < to")
-        return self
-
-
-class _Lengths(_Range):
-    start: Annotated[Metres, Field(alias="from")]
-    to: Metres
-
-
-class _Loads(_Range):
-    start: Annotated[Newtons, Field(alias="from")]
-    to: Newtons
-    count: Annotated[int, Field(ge=4, le=1000)]
-
-
-# Discriminated by type, so that an error message concerns one of them only.
-_BY_TYPE = Discriminator(lambda given: "range" if isinstance(given, dict | _Range) else "list")
-Sweep = Annotated[Annotated[Values, Tag("list")] | Annotated[_Range, Tag("range")], _BY_TYPE]
-LengthSweep = Annotated[Annotated[Lengths, Tag("list")] | Annotated[_Lengths, Tag("range")], _BY_TYPE]
-
-
-class _Sweep(Strict):
-    modulus_ratio: Values | None = None
-    thickness: LengthSweep | None = None
-    thickness_over_a_h: Sweep | None = None
-    load: _Loads | None = None
-    friction: Annotated[list[Annotated[float, Field(ge=0, le=2)]], Field(min_length=1, max_length=1000)] = (
-        Field(default_factory=lambda: [0.0])
-    )
-    cross_check: Annotated[int, Field(ge=0, le=MOST_POINTS)] = 10
-
-    @model_validator(mode="after")
-    def _one_thickness(self) -> "_Sweep":
-        if (self.thickness is None) == (self.thickness_over_a_h is None):
-            raise ValueError("needs exactly one of thickness [m] or thickness_over_a_h")
-        return self
-
-
 class _Semianalytic(Strict):
     patches: Annotated[int, Field(ge=33, le=1025)] | None = None
     estimate_uncertainty: bool | None = None
@@ -317,7 +255,7 @@ class _StudyFile(Strict):
     title: Text
     source: Text = NO_SOURCE
     problem: _SweptProblem
-    sweep: _Sweep
+    sweep: Sweep
     semianalytic: _Semianalytic = _Semianalytic()
     fem_reference: _Fem = _Fem()
     criteria: Criteria = Criteria()
@@ -351,7 +289,8 @@ def parse_study(raw: bytes, path: Path) -> Study:
     load = p.load if p.load is not None else sweep.load.to  # type: ignore[union-attr]
     try:
         substrate = (p.substrate.E, p.substrate.nu)
-        bare = CoatedContact(p.size, load, (), substrate, ball=p.ball.bare if p.ball else None)
+        ball, indenter = p.ball.bare if p.ball else None, p.indenter.pair if p.indenter else None
+        bare = CoatedContact(p.size, load, (), substrate, ball=ball, indenter=indenter)
         around = p.held(bare.a_h)
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from None
@@ -365,12 +304,12 @@ def parse_study(raw: bytes, path: Path) -> Study:
         raise CaseError(f"{path}: coating: {error}") from None
     held, swept, ball = around.values()
     refuse_unfit_scales(path, replace(bare, coatings=held, ball=ball))
-    asked: list[float] | _Range | None = sweep.thickness
+    asked: list[float] | Range | None = sweep.thickness
     key, scale = "thickness", 1.0
     if asked is None:
         key, scale, asked = "thickness_over_a_h", bare.a_h, sweep.thickness_over_a_h
     assert asked is not None
-    values = thicknesses_between(asked.start, asked.to, asked.count) if isinstance(asked, _Range) else asked
+    values = thicknesses_between(asked.start, asked.to, asked.count) if isinstance(asked, Range) else asked
     thicknesses = tuple(value * scale for value in values)
 
     def slips(*given: float) -> str:
@@ -404,6 +343,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
         loads=(sweep.load.start, sweep.load.to, sweep.load.count) if sweep.load else None,
         residual=residual if any(residual) else (),
         **around,
+        indenter=indenter,
         halved=plain(p.held(bare.a_h, over=2)) if p.graded() else {},
         cross_check=sweep.cross_check,
         numerics={

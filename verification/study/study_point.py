@@ -17,6 +17,7 @@ from verification.problem.coated_contact import CoatedContact
 from verification.running.case_result import message_of
 from verification.running.provenance import versions
 from verification.running.slicing import sliced
+from verification.sampling.along_axis import AlongAxis
 from verification.sources.source_registry import solvers
 from verification.study.largest_stresses import quantities
 from verification.study.study_table import OVER, SCALARS, SCALES
@@ -27,7 +28,8 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
 
     request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness), held
     (fixed coatings, the first ``swept`` of them above it), residual (stresses of the coating [Pa]), substrate
-    (E, nu), ball (E, nu, coatings) unless it is rigid, halved (what differs with half of the sub-layers).
+    (E, nu), ball (E, nu, coatings) unless it is rigid, halved (what differs with half of the sub-layers),
+    indenter (shape, numbers) unless it is a sphere.
     Returns {"rows": [one dictionary for each residual stress, then friction], "seconds", "versions"}; a solve
     that fails leaves its message in every row.
     """
@@ -79,7 +81,9 @@ def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:
         ball = E, nu, tuple(tuple(layer) for layer in coatings)
     held, swept = tuple(map(tuple, request.get("held", ()))), request.get("swept", 0)
     coatings = (*held[:swept], coating, *held[swept:])
-    return CoatedContact(request["radius"], request["load"], coatings, substrate, friction, ball)
+    shape, radii = request.get("indenter") or (None, ())
+    indenter = (shape, tuple(radii)) if shape else None
+    return CoatedContact(request["radius"], request["load"], coatings, substrate, friction, ball, indenter)
 
 
 def table_rows(
@@ -118,6 +122,7 @@ def table_rows(
             "p_h": bare.p_h,
             "delta_h": bare.delta_h,
             "ball": json.dumps(request.get("ball")),
+            "indenter": json.dumps(request.get("indenter")),
             "numerics": json.dumps(request["numerics"], sort_keys=True),
             "versions": json.dumps(found["versions"], sort_keys=True),
             "key": key,
@@ -150,10 +155,16 @@ def _rows(
             raise ValueError(f"{name} = {value:g}; the solution is no contact")
         common |= {name: value} | ({} if spread is None else {f"{name}_uncertainty": spread})
     rows = []
-    found = quantities(solution, problem, frictions, residual, swept)
+    # of an ellipse the half axis takes the place of the radius; without friction in both planes of symmetry
+    axes = (False,) if problem.friction else (False, True)
+    sides: list[Any] = [AlongAxis(solution, across=across) for across in axes if problem.elliptical] or [
+        solution
+    ]
+    views = [quantities(side, problem, frictions, residual, swept) for side in sides]
     for stress, f in product(residual, frictions):
         row: dict[str, Any] = {"friction": f, "status": "solved", "failure": None, **common}
-        for name, at in found[stress, f].items():
+        for name in views[0][stress, f]:
+            at = max((view[stress, f][name] for view in views), key=lambda at: at.value)
             row |= {
                 name: at.value,
                 f"{name}_uncertainty": at.uncertainty,

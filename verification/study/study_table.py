@@ -6,6 +6,7 @@ Columns, in SI units unless they say "over":
     radius, load, coating_E, coating_nu, thickness, residual_stress, substrate_E, substrate_nu,
     friction                                                                                       the input
     ball (JSON): E, nu, coatings of an elastic ball, null of a rigid one
+    indenter (JSON): "ellipsoid" with the radii of the gap along x and y [m], null of a sphere
     modulus_ratio (E1/E2), thickness_over_a_h; a_h, p_h, delta_h of the bare substrate and ball
     peak_pressure, contact_radius, approach: X, X_over_p_h | a_h | delta_h, X_uncertainty
     each stress of QUANTITIES: X, X_over_p_h, X_uncertainty, X_x, X_x_over_a_h, X_z, X_z_over_a_h
@@ -52,6 +53,7 @@ _RESULT = (
         for end in ("", "_over_p_h", "_uncertainty", "_x", "_x_over_a_h", "_z", "_z_over_a_h")
     ),
 )
+_TEXTS = ("ball", "indenter", "numerics", "versions", "key")
 COLUMNS = pa.schema(
     [
         pa.field("point", pa.int64(), nullable=False),
@@ -61,7 +63,7 @@ COLUMNS = pa.schema(
         ),
         *(pa.field(name, pa.float64(), nullable=False) for name in _INPUT),
         *(pa.field(name, pa.float64()) for name in _RESULT),
-        *(pa.field(name, pa.string(), nullable=False) for name in ("ball", "numerics", "versions", "key")),
+        *(pa.field(name, pa.string(), nullable=False) for name in _TEXTS),
         pa.field("seconds", pa.float64(), nullable=False),
     ]
 )

@@ -11,7 +11,9 @@ from verification.cases.case_file import parse_case
 from verification.cases.toml_file import CaseError
 from verification.desk.case_wording import case_text
 from verification.desk.contact_answer import answer
+from verification.sampling.along_axis import AlongAxis
 from verification.sources.exact_sources import hertz
+from verification.sources.source_registry import solvers
 
 STEEL = "210 GPa, 0.3"
 
@@ -34,8 +36,11 @@ def stress(found, quantity, body="flat"):
 
 
 def test_a_ball_in_its_race_has_hertzs_half_axes_and_johnsons_tension():
-    """K. L. Johnson, Contact Mechanics, 1985, section 4.2: sigma_r = -sigma_t at the ends, of both bodies."""
-    problem, found = solved("4.7625 mm, 4.7625 mm", "18.24 mm, -5.4 mm")
+    """Ball of 9.525 mm of a 6206 on its inner ring: pitch circle 46 mm, groove of 52 % of the ball.
+
+    K. L. Johnson, Contact Mechanics, 1985, section 4.2: sigma_r = -sigma_t at the ends, of both bodies.
+    """
+    problem, found = solved("4.7625 mm, 4.7625 mm", "18.2375 mm, -4.953 mm")
     exact = hertz(problem)
     assert found.numbers["peak_pressure"][0] == pytest.approx(exact.peak_pressure, rel=1e-5)
     for name, axis in zip(("half_axis_x", "half_axis_y"), exact.axes, strict=True):
@@ -55,6 +60,22 @@ def test_a_ball_in_its_race_has_hertzs_half_axes_and_johnsons_tension():
             assert abs(at.value - expected) <= max(at.uncertainty, 1e-5 * exact.peak_pressure)
         at = stress(found, "sigma_yy", body)
         assert (at.x, abs(at.y)) == (0.0, pytest.approx(a, rel=1e-4))
+
+
+@pytest.mark.parametrize(
+    ("radii", "against", "load", "ratio"),
+    [("460 mm, flat", "flat, 254 mm", "100 kN", 1.5), ("5 mm, 470 mm", "20 mm, flat", "100 N", 20.0)],
+    ids=["wheel on rail", "barrel on ring"],
+)
+def test_wheel_and_barrel_are_hertz(radii, against, load, ratio):
+    problem = case_of(radii, against, load=load).problem
+    exact, found = hertz(problem), solvers()["semianalytic"](problem, {})
+    assert exact.a / exact.b == pytest.approx(ratio, rel=0.02)
+    value, U = found.sample(None, "peak_pressure")
+    assert abs(value - exact.peak_pressure) <= U <= 1e-5 * value
+    for axis, across in zip(exact.axes, (False, True), strict=True):
+        value, U = AlongAxis(found, across=across).sample(None, "contact_radius")
+        assert abs(value - axis) <= U <= 1e-4 * value
 
 
 def test_the_gap_alone_counts():
@@ -93,6 +114,12 @@ def test_exchanging_the_axes_exchanges_the_stresses():
         (["--radii", "5 mm, 5 mm", "--ball", "10 mm, 210 GPa, 0.3"], "--ball with --radii"),
         (["--radii", "5 mm, 5 mm", "--ball-coating", "1 um, 200 GPa, 0.3"], "--ball"),
         (["--ball", "5 mm", "--against", "5 mm, 5 mm"], "--radii"),
+        (["--roller", "R = 5 mm"], '"R = 5 mm, crown 2 m"'),
+        (["--roller", "R = 5,5 mm, crown 2 m"], "decimals with a point"),
+        (["--roller", "R = 5 mm, crown flat"], "give a crown"),
+        (["--roller", "R = 5 mm, crown 25 m"], "factor of 5e+03"),
+        (["--roller", "d = 10 apples, crown 2 m"], "'apples'"),
+        (["--roller", "R = 5 mm, crown 2 m", "--radii", "5 mm, 2 m"], "give one"),
     ],
 )
 def test_radii_without_meaning_are_refused_in_one_line(words, named, tmp_path):
@@ -101,6 +128,18 @@ def test_radii_without_meaning_are_refused_in_one_line(words, named, tmp_path):
     assert named in done.stderr
     assert done.stderr.count("\n") == 1
     assert done.stdout == ""
+
+
+@pytest.mark.parametrize(
+    "words", ["R = 5 mm, crown 2 m", "5 mm, 2 m", "d = 10 mm, crown R = 2 m", "D 0.01, crown 2"]
+)
+def test_a_roller_is_a_body_with_two_radii(words):
+    one, other = (
+        case_text(STEEL, "5 N", STEEL, against="20 mm, flat", **{name: text})
+        for name, text in (("roller", words), ("radii", "5 mm, 2 m"))
+    )
+    one, other = (parse_case(text.encode(), Path("options")).problem for text in (one, other))
+    assert one == other
 
 
 def test_radii_of_the_other_body_belong_to_an_ellipsoid():

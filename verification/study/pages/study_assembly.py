@@ -25,6 +25,7 @@ from verification.page.page_parts import (
 )
 from verification.page.source_labels import source_label
 from verification.problem.array_types import Coatings
+from verification.problem.display_units import radii_text
 from verification.running.checked_files import write_atomically
 from verification.study.choice.elastic_limits import beyond_elastic
 from verification.study.choice.failure_criteria import MODES
@@ -110,7 +111,7 @@ def _inputs_section(study: Study) -> Section:
     )
     strengths = study.criteria.given(units.shown_stress)
     rows = [
-        row("ball", called("ball", f"R = {study.radius * 1e3:g} mm, {E_ball}")),
+        row("indenter" if study.indenter else "ball", called("ball", f"{radii_text(bare)}, {E_ball}")),
         *(
             row(f"coating {i} on the ball", text)
             for i, text in enumerate(layers(study.ball[2] if study.ball else (), "ball.coatings"), start=1)

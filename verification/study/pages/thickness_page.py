@@ -246,8 +246,11 @@ def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
 
 
 def _maps(study: Study, found: Sequence[ThicknessCurve], failures: list[str]) -> list[Drawn]:
-    """Contours of the most compliant and the stiffest coating at the middle friction; none of a stack."""
-    if study.held:
+    """Contours of the most compliant and the stiffest coating at the middle friction; below spheres.
+
+    None of a stack.
+    """
+    if study.held or study.indenter:
         return []
     frictions = sorted({c.friction for c in found})
     middle = [c for c in found if c.friction == frictions[len(frictions) // 2]]
