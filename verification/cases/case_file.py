@@ -127,6 +127,10 @@ class IndenterEntry(Strict):
             for axis, *bends in zip("xy", self.radii, self.against or (inf, inf), strict=True):
                 if sum(1 / R for R in bends) <= 0:
                     both = " and ".join("flat" if isinf(R) else f"{1e3 * R:g} mm" for R in bends)
+                    if all(map(isinf, bends)):
+                        raise ValueError(
+                            f"is flat along {axis}: a line contact; give it a crown, such as 2 m"
+                        )
                     raise ValueError(
                         f"has no gap that opens along {axis}, where the radii of curvature are {both}; a "
                         "convex surface has a positive radius, a concave one around it a larger negative one"

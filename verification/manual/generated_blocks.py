@@ -18,7 +18,7 @@ from verification.evidence.fault_record import read_record
 from verification.guests.pages import guests_section
 from verification.manual.baseline_numbers import FOLDER, baseline, largest, points, stored
 from verification.manual.markdown_text import paragraphs, shown, symbol, table, text
-from verification.manual.tour_output import WORKED, solved
+from verification.manual.tour_output import QUESTIONS, solved
 from verification.page.number_text import scientific
 from verification.problem.quantity import PEAKS, QUANTITIES
 from verification.report.credibility import model_section
@@ -237,4 +237,4 @@ _ALL: tuple[Callable[[], str], ...] = (
     enclosures,
     assumption_costs,
 )
-BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL} | WORKED
+BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL} | QUESTIONS
