@@ -125,6 +125,7 @@ def _problem(
     # a body without a size has that of the ball which spans the map, for the scales of what is shown
     spanned = float(found.half_width**2 / (2 * np.ptp(found.heights)))
     bends = f"{spanned!r}, {spanned!r}"
+    tried: list[tuple[str, dict[str, Any]]]
     tried = [(ball, {"radii": bends}), (ball, {})] if ball else [(repr(spanned), {})]
     told = []
     for body, sized in tried:
@@ -163,6 +164,7 @@ def sentence(found: SurfaceMap, case: Case, contact: SurfaceContact) -> str:
     """Peak pressure, real area and the largest stresses in words."""
     units = units_of(case.problem)
     p0, U = contact.answer.numbers["peak_pressure"]
+    assert U is not None
     area, U_area = contact.area
     share = area / (2 * found.half_width) ** 2
     square = units.metre**2

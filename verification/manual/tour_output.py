@@ -35,7 +35,7 @@ def solved() -> str:
 
 
 def question(number: int) -> str:
-    """What the command of a designer's question prints, without the table of every largest stress."""
+    """Answer to a designer's question as its command prints it, without the table of every largest stress."""
     table = re.compile(r"^largest .*?(?=^tension positive)", re.MULTILINE | re.DOTALL)
     return table.sub("", _answers()["examples", number][0])
 

@@ -95,7 +95,7 @@ def _extremes(solution: semianalytic.Solution, case: Case, body: str) -> Iterato
 
     def largest(job: tuple[semianalytic.Solution, int, float]) -> dict[tuple[str, int], Place]:
         of, layer, z = job
-        stress = of.stress_plane(z, layer, body)[INDICES]
+        stress: Array = np.asarray(of.stress_plane(z, layer, body)[INDICES], dtype=np.float64)
         stress[:2] += residual[layer]
         found = {}
         for quantity, measure in (WITHIN | (ACROSS if z == edges[layer + 1] else {})).items():
@@ -116,7 +116,7 @@ def _extremes(solution: semianalytic.Solution, case: Case, body: str) -> Iterato
             own = [depth for of, depth in planes if of == layer]
             k = own.index(z)
             line = np.linspace(own[max(k - 1, 0)], own[min(k + 1, len(own) - 1)], FINE)
-            stress = solution.stress(x, y, line, layer, body)[INDICES]
+            stress: Array = np.asarray(solution.stress(x, y, line, layer, body)[INDICES], dtype=np.float64)
             stress[:2] += residual[layer]
             deeper = WITHIN[quantity](stress)
             if deeper.max() > value:

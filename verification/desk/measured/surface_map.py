@@ -6,6 +6,7 @@ Heights count out of the measured body, as instruments store them; its highest p
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline, griddata
@@ -43,7 +44,7 @@ class SurfaceMap:
         r2 = self.x[:, None] ** 2 + self.y[None, :] ** 2
         return SurfaceMap(self.x, self.y, self.heights - r2 / (2 * radius), self.unit, self.tilt, self.filled)
 
-    def gap(self, x: Array, y: Array) -> Array:
+    def gap(self, x: Any, y: Any) -> Array:
         """Height above the lowest point of the body that presses down [m], by cubic splines."""
         return np.asarray(self.heights.max() - self._spline.ev(*np.broadcast_arrays(x, y)))
 
@@ -102,7 +103,7 @@ def read_map(
             raise CaseError(f"{path}: has the unit {own}; leave out --unit {unit}")
         if (unit := own or unit) not in LENGTHS:
             raise CaseError(f"{path}: has no unit that is known; give --unit um, or {', '.join(LENGTHS)}")
-        pixels = channel.nb_grid_pts or ()
+        pixels = tuple(channel.nb_grid_pts or ())
         if len(pixels) != 2 or min(pixels) < 8:
             raise CaseError(f"{path}: holds {' x '.join(map(str, pixels))} points; a map has 8 x 8 at least")
         sides = channel.physical_sizes
@@ -114,7 +115,7 @@ def read_map(
             {"physical_sizes": tuple(size / LENGTHS[unit] * n / pixels[0] for n in pixels)} if size else {}
         )
         topography = reader.topography(**given)
-        heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
+        heights: Array = np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan)
         lengths = [LENGTHS[unit] * float(side) for side in topography.physical_sizes]
     except CaseError:
         raise
