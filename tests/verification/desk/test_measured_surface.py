@@ -73,7 +73,7 @@ def test_a_tilted_cap_presses_as_the_sphere_of_hertz():
 def test_a_flat_map_on_a_ball_is_that_ball_and_roughness_makes_less_contact():
     smooth, rough = (pressed(map_of(h).on_ball(R), case_of()) for h in (0 * CAP, ROUGH))
     assert smooth.solution.peak_pressure == pytest.approx(P0, rel=1e-5)
-    assert rough.area[0] < 0.8 * smooth.area[0]
+    assert rough.area[0] < 0.9 * smooth.area[0]
     assert rough.solution.peak_pressure > 1.2 * smooth.solution.peak_pressure
     assert sum(rough.solution.patch_pressure.ravel()) * (L / 97) ** 2 == pytest.approx(LOAD, rel=1e-6)
 
