@@ -24,7 +24,7 @@ def write(surface: SurfaceMap, found: SurfaceContact, title: str, units: Units, 
         x, y, nodes = (one / units.metre for one in (surface.x, surface.y, found.solution.nodes))
         heights = left.pcolormesh(x, y, surface.heights.T / units.metre, cmap="cividis", rasterized=True)
         figure.colorbar(heights, ax=left, label=f"height out of the body [{units.length}]")
-        left.set_title("measured surface, levelled; its highest points touch first", fontsize=9)
+        left.set_title("measured surface, levelled\nits highest points touch first", fontsize=9)
         p = found.solution.patch_pressure / units.pascal
         shown = right.pcolormesh(nodes, nodes, np.where(p > 0, p, np.nan).T, cmap="viridis", rasterized=True)
         figure.colorbar(shown, ax=right, label=f"pressure [{units.stress}]")
