@@ -50,6 +50,18 @@ class PlainFields:
         """Value of a quantity at points, with its uncertainty."""
         raise NotImplementedError
 
+    def _repr_html_(self) -> str:
+        """Sentence and table of the numbers for a notebook."""
+        units = {"peak_pressure": ("MPa", 1e6), "contact_radius": ("µm", 1e-6), "approach": ("µm", 1e-6)}
+        cells = ""
+        for name, (unit, size) in units.items():
+            value, U = self.sample(None, name)
+            stated = "-" if U is None else f"{U / size:.0e}"
+            label = f"{name.replace('_', ' ')} [{unit}]"
+            cells += f"<tr><td>{label}</td><td>{value / size:.6g}</td><td>{stated}</td></tr>"
+        head = "<p>Contact by finite elements.</p><table><tr><th></th><th>value</th><th>±</th></tr>"
+        return f"{head}{cells}</table>"
+
     def pressure(self, x: Any, y: Any = 0.0) -> np.ndarray:
         """Contact pressure [Pa] at the surface points (x, y), broadcast; zero outside the contact."""
         return np.asarray(self.sample(ElementPoints(x, y), "pressure", False).value)

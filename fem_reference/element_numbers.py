@@ -36,8 +36,8 @@ ROWS = 2.6  # of triangles across a coating next to the contact
 # Films buried at many times their thickness are left to flat triangles: least height of a row over the size.
 LEAST_ROW = 0.25
 # Smallest triangle, at the contact edge, over the contact radius. Places nearer to each other coincide: with
-# the axis, where u/r is the limit from outside, exact to its square; over a triangle, with an interface. An edge that
-# moves less is at rest.
+# the axis, where u/r is the limit from outside, exact to its square; over a triangle, with an interface. An
+# edge that moves less is at rest.
 EDGE_SIZE = 1e-7
 # Distance from a jump of a prescribed pressure, over the radius of the load, within which it has no value.
 AT_SINGULAR = 1e-8

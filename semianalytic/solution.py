@@ -4,6 +4,8 @@ A ``Solution`` carries its coarser companions, the same problem on fewer patches
 term for each other cause, follows its uncertainty (``uncertainty``).
 """
 
+from __future__ import annotations
+
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -14,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import distance_transform_cdt, maximum_filter
 
-from semianalytic import numbers
+from semianalytic import numbers, solution_html
 from semianalytic.inputs import Body, check_finite
 from semianalytic.patch_answer import PatchAnswer, PatchPoints
 from semianalytic.patches.level import Level, interpolated
@@ -70,7 +72,7 @@ class Solution:
     uncertainty: Uncertainty | None
     nodes: Array = field(repr=False)  # patch centres along one axis [m]
     patch_pressure: Array = field(repr=False)  # at the patch centres [Pa], (n, n)
-    coarser: "Solution | None" = field(repr=False)
+    coarser: Solution | None = field(repr=False)
     _level: Level = field(repr=False)
     _body: Body = field(repr=False)
     neighbours: Neighbours | None = field(default=None, repr=False)
@@ -80,7 +82,7 @@ class Solution:
     @classmethod
     def of_levels(
         cls, levels: Sequence[Level], body: Body, uncertainty: Uncertainty | None, began: float
-    ) -> "Solution":
+    ) -> Solution:
         """Solution of the last level; with an uncertainty, the two before are its coarser companions.
 
         began : ``time.perf_counter()`` at the start of the solve.
@@ -93,7 +95,7 @@ class Solution:
         return replace(solution, uncertainty=uncertainty, diagnostics=diagnostics)
 
     @classmethod
-    def _of_level(cls, level: Level, body: Body, coarser: "Solution | None") -> "Solution":
+    def _of_level(cls, level: Level, body: Body, coarser: Solution | None) -> Solution:
         scalars, found = level.scalars, level.found
         grid, pressure = replace(level.grid, quarter=False), level.grid.whole(found.pressure)
         # the gap has served the iteration; kept, it would be as large as the pressure
@@ -148,7 +150,11 @@ class Solution:
             return PatchAnswer(getattr(self, quantity), stated and getattr(stated, quantity))
         return PatchAnswer(None)
 
-    def with_friction(self, friction: float) -> "Solution":
+    def _repr_html_(self) -> str:
+        """Sentence, table and pressure for a notebook."""
+        return solution_html.shown(self)
+
+    def with_friction(self, friction: float) -> Solution:
         """Solution with this pressure, sliding with another finite coefficient; ValueError otherwise."""
         check_finite(friction=friction)
         coarser = None if self.coarser is None else self.coarser.with_friction(friction)

@@ -4,6 +4,8 @@ Assumed: small strains, perfect bond, the sphere's parabola, both bodies half-sp
 friction q = f p that leaves p unchanged.
 """
 
+from __future__ import annotations
+
 import time
 from collections.abc import Callable
 from dataclasses import replace

@@ -6,6 +6,8 @@
 'Stiff coating, E1/E2 = 4, h = a_h'
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +19,7 @@ if TYPE_CHECKING:
     from verification.problem.point_answers import Points
     from verification.running.case_result import CaseResult
 
-__all__ = ["Points", "answer", "compare", "read_case", "solve"]
+__all__ = ["Points", "answer", "compare", "read_case", "solve", "state"]
 
 
 def __getattr__(name: str) -> Any:
@@ -29,7 +31,7 @@ def __getattr__(name: str) -> Any:
     return Points
 
 
-def read_case(name: str | Path) -> "Case":
+def read_case(name: str | Path) -> Case:
     """A case file, or a shipped case by its name: its problem in SI units, its claims and its numerics.
 
     Raises ``verification.cases.toml_file.CaseError``, a ValueError, with file and key where it is not valid.
@@ -40,34 +42,59 @@ def read_case(name: str | Path) -> "Case":
     return case_file.read_case(shipped.get(str(name), Path(name)))
 
 
-def answer(
-    case: "Case | None" = None,
+def state(
     *,
-    ball: str = "",
-    load: str | None = None,
-    substrate: str = "",
-    coatings: Sequence[str] = (),
+    ball: str | float | None = None,
+    load: str | float | None = None,
+    substrate: str,
+    coatings: str | Sequence[str] = (),
     friction: float = 0.0,
-    on_ball: Sequence[str] = (),
-    approach: str | None = None,
-) -> "DesignAnswer":
-    """What ``coatcheck solve`` answers to a case, or to a problem in the words of its options.
+    on_ball: str | Sequence[str] = (),
+    approach: str | float | None = None,
+    radii: str | None = None,
+    against: str | None = None,
+    temperature_change: float | None = None,
+) -> Case:
+    """A problem in the words of the options of ``coatcheck solve``, to be solved, answered or compared.
+
+    ``state(ball="10 mm", load="20 N", coatings=["TiN 2 um, 450 GPa, 0.25"], substrate="210 GPa, 0.3")``
+    Numbers without a unit are SI. Raises ValueError for words that state no problem.
+    """
+    from verification.cases.case_file import parse_case
+    from verification.desk.case_wording import case_text
+
+    sized, pressed, sunk = (
+        repr(one) if isinstance(one, float | int) else one for one in (ball, load, approach)
+    )
+    layers, on = ([one] if isinstance(one, str) else one for one in (coatings, on_ball))
+    text = case_text(
+        sized,
+        pressed,
+        substrate,
+        layers,
+        friction,
+        on,
+        sunk,
+        temperature_change=temperature_change,
+        radii=radii,
+        against=against,
+    )
+    return parse_case(text.encode(), Path("words"))
+
+
+def answer(case: Case | None = None, **words: Any) -> DesignAnswer:
+    """What ``coatcheck solve`` answers to a case, or to a problem in ``words`` as of ``state``.
 
     ``answer(ball="10 mm", load="20 N", coatings=["TiN 2 um, 450 GPa, 0.25"], substrate="210 GPa, 0.3")``
     Printed it is a sentence and, where strengths are stated, a verdict; a notebook adds table and figure.
     Raises ValueError for words that state no problem, and what the semi-analytical method raises.
     """
-    from verification.cases.case_file import parse_case
-    from verification.desk.case_wording import case_text
     from verification.desk.design_answer import design_answer
 
-    if case is None:
-        text = case_text(ball, load, substrate, coatings, friction, on_ball, approach)
-        case = parse_case(text.encode(), Path("words"))
-    return design_answer(case)
+    return design_answer(state(**words) if case is None else case)
 
 
-def solve(case: "Case | CoatedContact", source: str = "semianalytic", **numerics: Any) -> "ContactSolution":
+def solve(case: Case | CoatedContact, source: str = "semianalytic", **numerics: Any) -> ContactSolution:
     """The solution of a case, or of a ``CoatedContact``, by one source.
 
     source : "semianalytic", "fem_reference", "integral_equation", or another of ``source_registry.SOURCES``.
@@ -91,7 +118,7 @@ def solve(case: "Case | CoatedContact", source: str = "semianalytic", **numerics
     return known[source](problem, numerics)
 
 
-def compare(case: "Case") -> "CaseResult":
+def compare(case: Case) -> CaseResult:
     """A case solved by every source that its claims name, with a verdict on each claim and invariant.
 
     ``outcome`` is the worst of ``verdicts``; a source that failed has its message in ``sources``.

@@ -106,22 +106,23 @@ app.command(
 )
 
 
-def _remedy(text: str, command: Sequence[str]) -> str:
-    """Advice after the ``text`` of an error, in the words of a ``command``."""
+def _with_remedy(text: str, command: Sequence[str]) -> str:
+    """The ``text`` of an error with advice in the words of a ``command``."""
     meant = COMMANDS[command[0]].get("meant", {}) if command and command[0] in COMMANDS else {}
     unknown = re.search(r"--?(\w+)", text)
     if text.startswith("Unknown option") and unknown and unknown[1] in meant:
-        return f"Try: {meant[unknown[1]]}"
+        return f"{text.partition(' Did you mean')[0]} Try: {meant[unknown[1]]}"
     if "requires an argument" in text:
         option = re.search(r"--[\w-]+", text)
         return (
-            f"Give its value; one that begins with - needs an equals sign, {option[0] if option else ''}=..."
+            f"{text} Give its value; one that begins with - needs an equals sign, "
+            f"{option[0] if option else ''}=..."
         )
     if re.search(r"\d ?%", text):
-        return "Write a share without %, such as 0.15."
+        return f"{text} Write a share without %, such as 0.15."
     if re.search(r"\d,\d", text):
-        return "Write decimals with a point, such as 0.15."
-    return f"Try: coatcheck {' '.join([*(one for one in command if one in COMMANDS), '--help'])}"
+        return f"{text} Write decimals with a point, such as 0.15."
+    return f"{text} Try: coatcheck {' '.join([*(one for one in command if one in COMMANDS), '--help'])}"
 
 
 # Packages that the base installation lacks, by the name that Python imports, with the extra that brings them.
@@ -132,6 +133,7 @@ EXTRAS = {
     "pyvista": "fields",
     "matplotlib": "report",
     "pyarrow": "report",
+    "SurfaceTopography": "surfaces",
 }
 
 
@@ -150,7 +152,7 @@ def main() -> None:
         code = app(sys.argv[1:], exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
         text = " ".join(str(error).split())
-        print_error(f"{text} {_remedy(text, sys.argv[1:2])}")
+        print_error(_with_remedy(text, sys.argv[1:2]))
         code = BAD_INPUT
     except ImportError as error:
         package = _missing_extra(error)

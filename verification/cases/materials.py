@@ -1,5 +1,6 @@
 """Materials by name: typical elastic constants, each with its public source, from one TOML file."""
 
+from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import Annotated
@@ -69,3 +70,17 @@ def read_materials(path: Path = SHIPPED) -> dict[str, KnownMaterial]:
 def plain_name(name: str) -> str:
     """A name without what people write differently: case, spaces, hyphens."""
     return name.casefold().replace(" ", "").replace("-", "")
+
+
+def meant(name: str, known: dict[str, KnownMaterial]) -> str:
+    """Advice on a name that is not ``known``: names that share a word with it or are spelt like it."""
+    words = {word for word in name.casefold().split() if len(word) > 2}
+    near = [
+        one.name
+        for one in known.values()
+        for called in (one.name, *one.also)
+        if words & {*called.casefold().split()}
+    ]
+    near += [known[key].name for key in get_close_matches(plain_name(name), known, n=2)]
+    *others, last = dict.fromkeys(near) or ("",)
+    return f"; did you mean {', '.join(others)}{' or ' * bool(others)}{last}?" if near else ""

@@ -153,7 +153,10 @@ def _form(text: str, unit: str) -> str:
     if unit == "m" and (found := re.fullmatch(rf"(?:d|D|dia\w*|Ø)\s*=?\s*({NUMBER}.*)", text)):
         return f'; give it as diameter = "{found[1]}"' + _form(found[1], unit)
     if _RANGE.fullmatch(text):
-        course = '; a graded coating has E = { course = "linear", top = "130 GPa", base = "300 GPa" }'
+        course = (
+            '; a graded coating has E = { course = "linear", top = "130 GPa", base = "300 GPa" } in a file'
+        )
+        course += ', "130 GPa to 300 GPa" in --coating'
         return "; give one value" + (course if unit == "Pa" else "")
     if (found := _LAST.fullmatch(text)) and is_of(unit, found[1]):
         return f'; give "{found[1]}" alone, and a name as name = "..."'

@@ -4,17 +4,17 @@ ball "10 mm" or "10 mm, 210 GPa, 0.3" (radius; of an elastic ball E, nu), coatin
 (thickness, E, nu), substrate "210 GPa, 0.3"; bare numbers are SI. Strengths and residual stress may follow:
 "TiN 2 um, 450 GPa, 0.25, strength 2 GPa, residual -1.5 GPa". "d = 20 mm" is a diameter, and a name may
 come first: "DLC 3 um, 450 GPa, 0.22", "M2 HSS 60 HRC 220 GPa, 0.3", "100Cr6 d = 6 mm, 210 GPa, 0.3". The
-reader of case files checks the numbers: both have the same limits, units, messages.
+reader of case files checks the numbers: both have the same limits, units, messages. "300 GPa to 150 GPa" is
+the modulus of a graded coating, from its surface down.
 """
 
 import json
 import re
 from collections.abc import Callable, Sequence
-from difflib import get_close_matches
 from functools import partial
 from pathlib import Path
 
-from verification.cases.materials import SHIPPED, plain_name, read_materials
+from verification.cases.materials import SHIPPED, meant, plain_name, read_materials
 from verification.cases.toml_file import is_number
 from verification.cases.unit_numbers import NUMBER, in_si
 
@@ -26,6 +26,8 @@ _NAMED = re.compile(rf"(.*?\S)[\s:]+({_SIZE})")
 # A name does not begin with a number, but for that of a steel, 1.3505; nor does it hold a size.
 _NO_NAME = re.compile(rf"(?!1\.\d{{4}}\b)[+-]?[\d.,]+(?:\s|$)|.*\b{NUMBER} ?(?:[numk]?m|µm|[kMGT]?Pa)\b")
 _REPEATED = re.compile(r"(\d{1,3})\s*[x*×]\s*\((.*)\)", re.DOTALL)
+_GRADED = re.compile(rf"({NUMBER})\s*([^\W\d_]*)\s+to\s+({NUMBER})\s*([^\W\d_]*)")
+SUBLAYERS = 16  # of a graded coating
 _COMMA = re.compile(r"\d,\d")
 # What may be stated of a layer behind its numbers, with the keys of a case file.
 _KEYS = {
@@ -167,13 +169,26 @@ def _layers(option: str, text: str, solid: Solid) -> str:
     found = _REPEATED.fullmatch(text.strip())
     if found is None:
         return _coating(option, text, solid)
-    stack = ", ".join(_coating(option, part, solid) for part in re.split(r"\s/\s", found[2]))
+    parts = re.split(r"\s/\s", found[2])
+    try:
+        stack = ", ".join(_coating(option, part, solid) for part in parts)
+    except ValueError as error:
+        between = "" if len(parts) > 1 else '; layers of a stack are separated by " / "'
+        raise ValueError(f"{error}{between}") from None
     return f"{{ repeat = {found[1]}, stack = [{stack}] }}"
 
 
 def _coating(option: str, text: str, solid: Solid) -> str:
-    called, words = solid(option, text)
-    thickness, E, nu = map(_toml, words)
+    called, (thickness, E, nu) = solid(option, text)
+    graded = _GRADED.fullmatch(E)
+    thickness, E, nu = map(_toml, (thickness, E, nu))
+    if graded:
+        ends = (
+            _toml(f"{number} {unit or graded[4]}")
+            for number, unit in (graded.groups()[:2], graded.groups()[2:])
+        )
+        E = 'course = "linear", top = {}, base = {}'.format(*ends)
+        E = f"{{ {E} }}, layers = {SUBLAYERS}"
     return f"{{ {called}thickness = {thickness}, E = {E}, nu = {nu} }}"
 
 
@@ -195,9 +210,7 @@ def _solid(option: str, text: str, materials: Path, used: dict[str, str]) -> tup
         name = f"{name} {words.pop()}".strip() if len(names) == 2 else name
         known = read_materials(materials)
         if (material := known.get(plain_name(name))) is None:
-            near = get_close_matches(plain_name(name), known, n=2)
-            hint = f"; did you mean {' or '.join(known[one].name for one in near)}?" if near else ""
-            unknown = f"; {name!r} is not among those of coatcheck materials{hint}"
+            unknown = f"; {name!r} is not among those of coatcheck materials{meant(name, known)}"
         else:
             used[name] = material.told
             words += [repr(float(material.E)), repr(material.nu)]

@@ -126,13 +126,18 @@ def outside_verified(case: Case) -> str:
             h = sum(h for *_, h in layers)
             low, high = thickness[0] * (1 - 1e-3), thickness[1] * (1 + 1e-3)
             if not any(low <= h / radius <= high for radius in (a, problem.a_h)):
-                found.append(f"coating {i}{of}, h = {h / a:.2g} a, outside {_between(thickness)}")
+                found.append((f"coating {i}{of}", f"h = {h / a:.2g} a, outside {_between(thickness)}"))
             ratios = [E / seen.substrate[0] for E, _, _ in layers]
             if not ratio[0] <= min(ratios) <= max(ratios) <= ratio[1]:
-                found.append(
-                    f"coating {i}{of}, E = {ratios[0]:.2g} of the substrate's, outside {_between(ratio)}"
-                )
-    return "; ".join(found)
+                told = f"E = {ratios[0]:.2g} of the substrate's, outside {_between(ratio)}"
+                found.append((f"coating {i}{of}", told))
+    alike: dict[str, list[str]] = {}
+    for name, told in found:
+        alike.setdefault(told, []).append(name)
+    return "; ".join(
+        f"{names[0]}{f' and {len(names) - 1} more' * (len(names) > 1)}, {told}"
+        for told, names in alike.items()
+    )
 
 
 def _films(problem: CoatedContact) -> bool:

@@ -19,7 +19,7 @@ from verification.guests.pages import guests_section
 from verification.manual.baseline_numbers import FOLDER, baseline, largest, points, stored
 from verification.manual.line_limit import line_limit
 from verification.manual.markdown_text import paragraphs, shown, symbol, table, text
-from verification.manual.tour_output import WORKED, solved
+from verification.manual.tour_output import QUESTIONS, solved
 from verification.page.number_text import scientific
 from verification.problem.quantity import PEAKS, QUANTITIES
 from verification.report.credibility import model_section
@@ -239,4 +239,4 @@ _ALL: tuple[Callable[[], str], ...] = (
     enclosures,
     assumption_costs,
 )
-BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL} | WORKED
+BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL} | QUESTIONS

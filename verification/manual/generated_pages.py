@@ -8,7 +8,7 @@ from importlib import import_module
 from pathlib import Path
 
 from verification.manual.case_pages import case_pages
-from verification.manual.tour_output import picture
+from verification.manual.tour_output import pictures
 
 PACKAGE = Path(__file__).resolve().parents[1]
 ROOT = PACKAGE.parent
@@ -36,7 +36,7 @@ def generated_pages() -> Iterator[tuple[str, str | bytes]]:
     yield from _gallery()
     yield "commands.md", _commands()
     yield "protocol.md", (PACKAGE / "guests" / "PROTOCOL.md").read_text(encoding="utf-8")
-    yield "tour.svg", picture()
+    yield from pictures()
     yield "problem.svg", (PACKAGE / "report" / "html" / "problem.svg").read_bytes()
 
 

@@ -1,4 +1,4 @@
-"""Output of coatcheck solve for the tour and for the worked examples, with the picture of the tour."""
+"""Answers of coatcheck solve for the tour and for the questions of a designer: texts and pictures."""
 
 import os
 import re
@@ -7,32 +7,55 @@ import subprocess
 import sys
 import tempfile
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
 from pathlib import Path
 
 SOURCE = Path(__file__).parent / "source"
 
 
+def commands(page: str) -> list[list[str]]:
+    """The words of each command on a page that solves a problem and ends with its ``--plot``."""
+    text = re.sub(r" \\\n +", " ", (SOURCE / f"{page}.md").read_text(encoding="utf-8"))
+    found = re.findall(r"^coatcheck (solve .+ --plot \S+)$", text, re.MULTILINE)
+    return [shlex.split(line) for line in found]
+
+
+def pictures() -> Iterator[tuple[str, bytes]]:
+    """Name and content of the picture that each of these commands draws, as SVG."""
+    yield "tour.svg", _answers()["tour", 1][1]
+    for number in range(1, len(commands("examples")) + 1):
+        yield f"question_{number}.svg", _answers()["examples", number][1]
+
+
 def solved() -> str:
     """The text that the command of the tour prints, as a block of code."""
-    return _run()[0]
+    return _answers()["tour", 1][0]
 
 
-def picture() -> bytes:
-    """The picture that the command of the tour draws, as SVG."""
-    return _run()[1]
+def question(number: int) -> str:
+    """Answer to a designer's question as its command prints it, without the table of every largest stress."""
+    table = re.compile(r"^largest .*?(?=^tension positive)", re.MULTILINE | re.DOTALL)
+    return table.sub("", _answers()["examples", number][0])
 
 
 @cache
-def _run() -> tuple[str, bytes]:
-    page = (SOURCE / "tour.md").read_text(encoding="utf-8")
-    page = re.sub(r" \\\n +", " ", page)  # each command on one line
-    found = re.search(r"^coatcheck (solve --ball .+)$", page, re.MULTILINE)
-    assert found, "the tour has no line that begins with coatcheck solve --ball"
-    words = [word.replace(".png", ".svg") for word in shlex.split(found[1])]
+def _answers() -> dict[tuple[str, int], tuple[str, bytes]]:
+    """Text and picture of every command of both pages, two solved at a time."""
+    asked = {
+        (page, number): words
+        for page in ("tour", "examples")
+        for number, words in enumerate(commands(page), start=1)
+    }
+    with ThreadPoolExecutor(2) as pool:
+        return dict(zip(asked, pool.map(_answered, asked.values()), strict=True))
+
+
+def _answered(words: Sequence[str]) -> tuple[str, bytes]:
     with tempfile.TemporaryDirectory() as work:
-        return transcript(words, Path(work)), (Path(work) / "stresses.svg").read_bytes()
+        text = transcript([*words[:-1], "drawn.svg"], Path(work))
+        return text, (Path(work) / "drawn.svg").read_bytes()
 
 
 def transcript(words: Sequence[str], work: Path, *before: str) -> str:
@@ -67,13 +90,4 @@ def shown_lines(warned: str, printed: str) -> list[str]:
     return [textwrap.fill(line, 88) if len(line) > 88 else line for line in lines]
 
 
-def worked(number: int) -> str:
-    """Output for the file of this number, from 1."""
-    page = (SOURCE / "examples.md").read_text(encoding="utf-8")
-    files = re.findall(r"^```toml\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
-    with tempfile.TemporaryDirectory() as work:
-        (Path(work) / "example.toml").write_text(files[number - 1], encoding="utf-8")
-        return transcript(["solve", "example.toml"], Path(work), "$ coatcheck solve example.toml")
-
-
-WORKED = {f"worked_{number}": partial(worked, number) for number in (1, 2, 3)}
+QUESTIONS = {f"question_{number}": partial(question, number) for number in range(1, 12)}

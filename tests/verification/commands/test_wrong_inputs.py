@@ -36,6 +36,11 @@ WRONG = [
     ({"--ball": "steel 6 mm"}, "100Cr6 d = 6 mm, 210 GPa, 0.3"),
     ({"--coating": "diamand 2 um"}, "did you mean diamond"),
     ({"--substrate": "steel"}, "100Cr6 210 GPa, 0.3"),
+    ({"--substrate": "steel"}, "100Cr6, mild steel, tool steel or stainless steel?"),
+    ({"--coating": "9 x (2 um, 180 GPa, 0.2, 1 um, 200 GPa, 0.2)"}, 'are separated by " / "'),
+    ({"--coating": "2 um, 130-300 GPa, 0.2"}, '"130 GPa to 300 GPa" in --coating'),
+    ({"--depth": "100 nm"}, ': --depth. Try: --approach "100 nm"'),
+    ({"--ball": None, "--radii": "5 mm, flat"}, "line contact; give it a crown"),
     ({"--substrate": "3 um 210 GPa, 0.3"}, "210 GPa"),
     ({"--coating": "a-C:H 3 um 150 GPa 0.25"}, "DLC 3 um, 450 GPa, 0.22"),
     ({"--coating": "180 GPa, 2 um, 0.2"}, "exchange"),
@@ -104,7 +109,10 @@ NO_FORCE = 'load must be a number or a force such as "20 N", not'
 NO_LENGTH = 'radius must be a number or a length such as "3 um", not'
 NO_TOML = "not TOML: Expected newline or end of document after a statement"
 NO_STRESS = 'must be a number or a stress such as "210 GPa", not'
-COURSE = '; a graded coating has E = { course = "linear", top = "130 GPa", base = "300 GPa" }'
+COURSE = (
+    '; a graded coating has E = { course = "linear", top = "130 GPa", base = "300 GPa" } in a file, '
+    '"130 GPa to 300 GPa" in --coating'
+)
 TYPED = [
     ("20 N", "1,000 N", f"{NO_FORCE} '1,000 N'; the comma has two readings, give \"1000 N\" or \"1.000 N\""),
     ("20 N", "1,234,567 N", f"{NO_FORCE} '1,234,567 N'; leave out the commas, \"1234567 N\""),

@@ -4,16 +4,10 @@ from pathlib import Path
 
 from rich.markup import escape
 
-from verification.cases.materials import SHIPPED, plain_name, read_materials
+from verification.cases.materials import SHIPPED, meant, plain_name, read_materials
 from verification.commands.common.command_error import CommandError
 from verification.commands.common.shared_options import AsJson
-from verification.commands.common.terminal import (
-    did_you_mean,
-    named_table,
-    print_json,
-    print_out,
-    with_exit_code,
-)
+from verification.commands.common.terminal import named_table, print_json, print_out, with_exit_code
 from verification.problem.display_units import prefixed
 
 
@@ -29,7 +23,7 @@ def materials(*names: str, file: Path = SHIPPED, as_json: AsJson = False) -> int
     chosen = []
     for name in names:
         if (found := known.get(plain_name(name))) is None:
-            raise CommandError(f"{name}: not in {file}{did_you_mean(plain_name(name), known)}")
+            raise CommandError(f"{name}: not in {file}{meant(name, known)}")
         chosen.append(found)
     every = list({one.name: one for one in known.values()}.values())
     chosen = chosen or every

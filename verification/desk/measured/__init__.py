@@ -1,0 +1,1 @@
+"""Measured surfaces as indenters: their files, the contact of patches below them, their picture."""
