@@ -81,6 +81,7 @@ class GuestFile(Strict):
     claim : largest relative difference that the code claims to have; None where it does not say.
     edge : half-width of a zone around the contact edge that is left out, as a fraction of a.
     refine : numerical parameter of the refinement study with its values, coarse to fine.
+    notes : what users of the code should know and its documentation does not say: axis, sign, side, default.
     known : reason of each known failure by "case/quantity" or "case/quantity/line".
     """
 
@@ -100,6 +101,7 @@ class GuestFile(Strict):
     refine: Annotated[
         dict[str, Annotated[list[Level], Field(min_length=3, max_length=12)]], Field(max_length=1)
     ] = Field(default_factory=dict)
+    notes: Annotated[list[Text], Field(max_length=20)] = Field(default=[])
     known: Annotated[dict[str, Text], Field(default_factory=dict, max_length=1000)]
 
     @model_validator(mode="after")

@@ -176,8 +176,9 @@ def citation() -> str:
 
 
 def real_guests() -> str:
-    """Codes of others examined: cases, largest differences, time, memory."""
-    return shown(guests_section.section().parts[0].tables[0])
+    """Codes of others examined: largest differences, time, memory; how errors fall; what to know."""
+    tables = (guests_section.differences(), guests_section.refinement(), guests_section.notes())
+    return "\n\n".join(shown(one) for one in tables)
 
 
 def history() -> str:

@@ -7,8 +7,10 @@ from collections.abc import Sequence
 from math import ceil, floor, log10
 from typing import Any
 
+import numpy as np
+
 from open_digits_made.problems import VectorProblem
-from open_digits_made.row import SCALARS, Row
+from open_digits_made.row import Row
 from open_digits_made.vector_schema import VectorSet
 from verification.guests.vectors.open_digits import csv_texts, shipped
 
@@ -23,10 +25,15 @@ def vector(problem: VectorProblem, rows: Sequence[Row]) -> dict[str, Any]:
         value, U = zip(
             *(_written(v, u) for v, u in zip(row.value, row.uncertainty, strict=True)), strict=True
         )
-        if row.x.size == 1 and row.x[0] == row.z[0] == 0 and row.quantity in CONTACT:
+        if row.points is None:
             contact[row.quantity] = [value[0], U[0]]
             continue
-        place = {"layer": row.layer, "x": row.x.tolist(), "z": row.z.tolist()}
+        at = row.points
+        place = {
+            "body": at.body,
+            "layer": at.layer,
+            **{c: np.asarray(getattr(at, c)).tolist() for c in "xyz"},
+        }
         if not points or {k: points[-1][k] for k in place} != place:
             points.append(place | {"values": {}, "uncertainty": {}})
         points[-1]["values"][row.quantity] = list(value)
@@ -38,9 +45,6 @@ def vector(problem: VectorProblem, rows: Sequence[Row]) -> dict[str, Any]:
         "contact": contact,
         "points": points,
     }
-
-
-CONTACT = (*SCALARS, "half_axis_x", "half_axis_y")
 
 
 def _written(value: float, uncertainty: float) -> tuple[float, float]:

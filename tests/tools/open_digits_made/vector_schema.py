@@ -17,8 +17,18 @@ class Material(_Strict):
     thickness: float | None = None
 
 
+class Solid(_Strict):
+    """Coatings of an elastic ball from its surface inwards, and the material below them."""
+
+    coatings: list[Material]
+    substrate: Material
+
+
 class Entry(_Strict):
-    """Radius [m] and load [N] of a sphere, radii and load of an ellipsoid, or pressure [Pa] on a disc."""
+    """Radius [m] and load [N] of a sphere, radii and load of an ellipsoid, or pressure [Pa] on a disc.
+
+    The sphere is rigid unless there is a ``ball``.
+    """
 
     radius: float | None = None
     radius_x: float | None = None
@@ -29,13 +39,16 @@ class Entry(_Strict):
     friction: float = 0.0
     coatings: list[Material]
     substrate: Material
+    ball: Solid | None = None
 
 
 class Points(_Strict):
-    """Values at points of the plane y = 0 in one layer; as many of each as x and z."""
+    """Values at points in one layer of a body; as many of each as x, y and z."""
 
+    body: Literal["flat", "ball"]
     layer: int
     x: list[float]
+    y: list[float]
     z: list[float]
     values: dict[str, list[float]]
     uncertainty: dict[str, list[float]]
@@ -52,9 +65,13 @@ class Vector(_Strict):
 
 
 class Checked(_Strict):
-    """How many ``values`` of how many ``problems`` a ``method`` gave, and how many lie ``within`` both U."""
+    """How many ``values`` of how many ``problems`` a ``method`` gave, and how many lie ``within`` both U.
+
+    of : which values were compared.
+    """
 
     method: str
+    of: str
     problems: int
     values: int
     within: int
@@ -62,12 +79,22 @@ class Checked(_Strict):
     refused: list[str] = Field(default_factory=list)
 
 
+class Cite(_Strict):
+    """How the values are cited."""
+
+    authors: str
+    title: str
+    version: str
+    date: str
+    licence: str
+
+
 class VectorSet(_Strict):
     """The whole data set; ``sha256`` are the checksums of the CSV files of the same content."""
 
-    schema_: Literal["coatcheck-vectors/1"] = Field(alias="schema")
+    schema_: Literal["coatcheck-vectors/2"] = Field(alias="schema")
     licence: Literal["CC0-1.0"]
-    cite: str
+    cite: Cite
     conventions: dict[str, str]
     made_by: dict[str, str]
     checked: list[Checked]

@@ -184,17 +184,20 @@ def code(request, tmp_path_factory):
     return Code(request.param, tmp_path_factory.mktemp("exam"))
 
 
-def test_right_answers_and_random_numbers_have_no_causes(code):
+@pytest.mark.parametrize("count", [3, pytest.param(20, marks=pytest.mark.slow)])
+def test_right_answers_and_random_numbers_have_no_causes(code, count):
     assert code.named([]) == []
     rng = np.random.default_rng(66)
-    for _ in range(3):
+    for _ in range(count):
         random = {k: rng.normal(size=v.size) * np.abs(v).max() for k, v in code.solved("").items()}
         assert code.messages(random) == []
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("sets", "share"), [([[name] for name in ALL], 0.9), (PAIRS, 0.7)], ids=["one", "two"]
+    ("sets", "share"),
+    [([[name] for name in INPUT], 0.9), ([[name] for name in OUTPUT], 0.9), (PAIRS, 0.7)],
+    ids=["an input", "an output", "two"],
 )
 def test_planted_slips_are_named_exactly_and_no_other(code, sets, share):
     found = {tuple(names): code.named(names) for names in sets}

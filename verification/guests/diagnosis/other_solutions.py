@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Set
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -52,8 +53,12 @@ def other_values(
     if problem.indenter is not None:
         found = sample_contact(hertz(problem), "")
         return {(p.quantity, p.line): p.value for p in found}
-    solution = solve_exactly(load, FAST if load is problem else None)
-    return sampled(case, problem, solution, positions, wanted, places)
+    return sampled(case, problem, _solved(load), positions, wanted, places)
+
+
+@lru_cache(maxsize=32)  # about as many slips as are tried, each first by its numbers, then by its fields
+def _solved(load: CoatedContact | PrescribedLoad) -> Any:
+    return solve_exactly(load, FAST if isinstance(load, CoatedContact) else None)
 
 
 def sampled(

@@ -59,6 +59,7 @@ def page(found: Examined, info: RunInfo) -> str:
         ("way in", guest.callable or " ".join(guest.command or ()) or f"files in {guest.results}"),
         ("uncertainty", _uncertainty(found)),
         ("left out", f"|r - a| < {guest.edge:g} a" if guest.edge else "nothing"),
+        *(("note", note) for note in guest.notes),
         ("command", info.command),
         ("machine", info.machine),
     ]
@@ -91,13 +92,13 @@ def summary(found: Examined) -> dict[str, Any]:
     """The examination in a few numbers, for a table of several guests.
 
     differences : the largest of each kind of quantity, by the name of a scalar.   seconds : shortest, longest
-    answer at the finest level.   memory : the largest [bytes], None where it is not known.
+    answer at the finest level.   memory : the largest [bytes], None where it is not known.   errors : the
+    largest of each kind over its line's largest value, at each level, coarse to fine.
     """
     guest, differences = found.guest, dict[str, float]()
     for _, claim, verdict in found.comparisons:
         if verdict.difference is not None:
-            kind = QUANTITIES[claim.quantity].kind
-            name = claim.quantity if kind == "scalar" else kind
+            name = _kind(claim.quantity)
             differences[name] = max(differences.get(name, 0.0), verdict.difference)
     judged = [r for r in found.results if any(v.difference is not None for _, v in r.verdicts)]
     own = [s for r in judged for s in r.sources if s.source == guest.name and s.seconds]
@@ -110,9 +111,27 @@ def summary(found: Examined) -> dict[str, Any]:
         "agree": found.total[Outcome.AGREES],
         "answered": found.answered,
         "differences": differences,
+        "errors": _falling(found),
+        "notes": guest.notes,
         "seconds": [min(times, default=0.0), max(times, default=0.0)],
         "memory": max((s.diagnostics["memory"] for s in own if "memory" in s.diagnostics), default=None),
     }
+
+
+def _kind(quantity: str) -> str:
+    """The kind of a quantity; a number of the contact is one by itself."""
+    kind = QUANTITIES[quantity].kind
+    return quantity if kind == "scalar" else kind
+
+
+def _falling(found: Examined) -> dict[str, list[float]]:
+    """Largest error of each kind of quantity at each level, over all cases."""
+    largest: dict[str, list[float]] = {}
+    studied = [one for one in found.results if found.guest.levels and one.name in found.replies]
+    for quantity, errors in (pair for one in studied for pair in _errors(found, one).items()):
+        name = _kind(quantity)
+        largest[name] = [max(pair) for pair in zip(largest.get(name, errors), errors, strict=True)]
+    return largest
 
 
 def _uncertainty(found: Examined) -> str:
@@ -287,15 +306,22 @@ def _convergence(found: Examined) -> Section | None:
 
 
 def _errors(found: Examined, result: CaseResult) -> dict[str, tuple[float, ...]]:
-    """Largest error of each quantity at each level over its scale; of a line outside the zone left out."""
+    """Largest error of each quantity at each level over the case's largest value of its kind.
+
+    Of a surface line outside the zone left out.
+    """
     guest, exact, a = found.guest, result.profile_of, exact_radius(result)
     errors: dict[str, list[float]] = {}
+    scales: dict[str, float] = {}
+    for p in result.profiles:
+        if p.source == reference_of(result.problem) and p.value.size:
+            scales[_kind(p.quantity)] = max(scales.get(_kind(p.quantity), 0.0), float(np.abs(p.value).max()))
     for reply in found.replies[result.name]:
         largest: dict[str, float] = {}
         for p in profiles_of(reply.answer, result, guest):
             true = exact[p.quantity, p.line, reference_of(result.problem)]
             judged = np.abs(np.abs(true.position) - a) >= guest.edge * a
-            scale = float(np.abs(true.value).max())
+            scale = scales[_kind(p.quantity)]
             gap = np.abs(p.value - true.value)[judged | (p.line == "contact")]
             if scale and gap.size:
                 largest[p.quantity] = max(largest.get(p.quantity, 0.0), float(gap.max()) / scale)

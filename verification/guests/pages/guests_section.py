@@ -15,7 +15,7 @@ COLUMNS = {
     "contact_radius": "a",
     "approach": "approach",
     "pressure": "p(r)",
-    "displacement": "u_z under a square",
+    "displacement": "displacement",
     "stress": "stresses",
 }
 
@@ -27,6 +27,16 @@ def examined() -> list[dict[str, Any]]:
 
 def section() -> Section:
     """The largest differences, time and memory of each code; the same for every run."""
+    text = (
+        "Answers of other contact codes to coatcheck guest run, through the adapters in "
+        "verification/guests/examples. What a code does not support is not counted. Settings were chosen "
+        "with the results in view: this is no blind test. python tests/tools guests records them."
+    )
+    return Section("guests", "Other codes", [Part(text, [differences()])])
+
+
+def differences() -> Table:
+    """A row for each code: how near it came, in what time."""
     rows = []
     for one in examined():
         memory = one["memory"] and one["memory"] / 1e6
@@ -41,11 +51,24 @@ def section() -> Section:
                 number(memory, "{:.0f} MB".format),
             )
         )
-    text = (
-        "Answers of other contact codes to coatcheck guest run, through the adapters in "
-        "verification/guests/examples. What a code does not support is not counted. Settings were chosen "
-        "with the results in view: this is no blind test. python tests/tools guests records them."
-    )
     caption = "Largest difference from the exact solution; longest time of the finest level, machine busy."
     heads = ["code", "agree", "problems", "levels", *COLUMNS.values(), "time", "memory"]
-    return Section("guests", "Other codes", [Part(text, [Table(caption, heads, rows)])])
+    return Table(caption, heads, rows)
+
+
+def refinement() -> Table:
+    """A row for each quantity of each code: its largest error at each level."""
+    rows = [
+        row(one["guest"], words(one["levels"]), COLUMNS[name], *(number(e) for e in errors[-3:]))
+        for one in examined()
+        for name, errors in one.get("errors", {}).items()
+        if name in COLUMNS
+    ]
+    caption = "Largest error over the case's largest value of its kind, at the last three levels."
+    return Table(caption, ["code", "levels", "quantity", "coarse", "middle", "fine"], rows)
+
+
+def notes() -> Table:
+    """A row for each fact about a code that its adapter had to find out."""
+    rows = [row(one["guest"], words(note)) for one in examined() for note in one.get("notes", ())]
+    return Table("Axis, sign, weight, side, default: found by trying.", ["code", "what to know"], rows)
