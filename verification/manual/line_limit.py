@@ -1,4 +1,4 @@
-"""Middle sections of long ellipses beside the contact along a line, solved when the manual is built."""
+"""Middle sections of long ellipses beside the contact along a line."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -6,6 +6,7 @@ from functools import cache
 import numpy as np
 
 from verification.manual.markdown_text import table
+from verification.manual.tour_output import STORED
 from verification.page.number_text import scientific
 from verification.problem.array_types import Array, Coatings
 from verification.problem.coated_contact import CoatedContact
@@ -60,7 +61,12 @@ def middle_section(ratio: float, coatings: Coatings) -> MiddleSection:
 
 
 def line_limit() -> str:
-    """Differences of long ellipses from the contact along a line."""
+    """Differences of long ellipses from the contact along a line, as stored."""
+    return (STORED / "line_limit.txt").read_text(encoding="utf-8")
+
+
+def solved_limit() -> str:
+    """Differences of long ellipses from the contact along a line, solved now."""
     rows = []
     for name, coatings in BODIES.items():
         for ratio in RATIOS:

@@ -1,4 +1,4 @@
-"""Answers of coatcheck solve for the tour and for the questions of a designer: texts and pictures."""
+"""Answers of coatcheck solve: that of the tour, solved anew, and those of a designer's questions, as stored."""
 
 import os
 import re
@@ -8,11 +8,11 @@ import sys
 import tempfile
 import textwrap
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
 from pathlib import Path
 
 SOURCE = Path(__file__).parent / "source"
+STORED = SOURCE / "stored"  # what takes minutes to solve: `python tests/tools answers` makes it anew
 
 
 def commands(page: str) -> list[list[str]]:
@@ -24,35 +24,29 @@ def commands(page: str) -> list[list[str]]:
 
 def pictures() -> Iterator[tuple[str, bytes]]:
     """Name and content of the picture that each of these commands draws, as SVG."""
-    yield "tour.svg", _answers()["tour", 1][1]
+    yield "tour.svg", _tour()[1]
     for number in range(1, len(commands("examples")) + 1):
-        yield f"question_{number}.svg", _answers()["examples", number][1]
+        yield f"question_{number}.svg", (STORED / f"question_{number}.svg").read_bytes()
 
 
 def solved() -> str:
     """The text that the command of the tour prints, as a block of code."""
-    return _answers()["tour", 1][0]
+    return _tour()[0]
 
 
 def question(number: int) -> str:
     """Answer to a designer's question as its command prints it, without the table of every largest stress."""
     table = re.compile(r"^largest .*?(?=^tension positive)", re.MULTILINE | re.DOTALL)
-    return table.sub("", _answers()["examples", number][0])
+    return table.sub("", (STORED / f"question_{number}.txt").read_text(encoding="utf-8"))
 
 
 @cache
-def _answers() -> dict[tuple[str, int], tuple[str, bytes]]:
-    """Text and picture of every command of both pages, two solved at a time."""
-    asked = {
-        (page, number): words
-        for page in ("tour", "examples")
-        for number, words in enumerate(commands(page), start=1)
-    }
-    with ThreadPoolExecutor(2) as pool:
-        return dict(zip(asked, pool.map(_answered, asked.values()), strict=True))
+def _tour() -> tuple[str, bytes]:
+    return answered(commands("tour")[0])
 
 
-def _answered(words: Sequence[str]) -> tuple[str, bytes]:
+def answered(words: Sequence[str]) -> tuple[str, bytes]:
+    """Text and picture of a command of these pages, solved now."""
     with tempfile.TemporaryDirectory() as work:
         text = transcript([*words[:-1], "drawn.svg"], Path(work))
         return text, (Path(work) / "drawn.svg").read_bytes()
