@@ -1,4 +1,4 @@
-"""Answers of coatcheck solve: that of the tour, solved anew, and those of a designer's questions, as stored."""
+"""Answers of coatcheck solve: that of the tour, solved anew, those of a designer's questions, as stored."""
 
 import os
 import re
