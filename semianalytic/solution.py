@@ -335,18 +335,19 @@ class Solution:
     def _uncertain_edge(self, solid: Body, points: Any) -> Array:
         """Change of the stress [Pa] by the uncertain radius, (3, 3) + points.
 
-        By a larger one at fixed places or, in the frame "edge", at places that move with it; at fixed places
-        within ``NEAR_EDGE`` patches of the edge, where it is not in proportion, by a smaller one too.
+        Of a wider contact at fixed places or, in the frame "edge", at places that move with it. Within
+        ``NEAR_EDGE`` patches of the edge it is not in proportion: at fixed places of a narrower one too.
+        Beyond, the pressure may be right where the edge is not: in the frame "edge" by the move alone too.
         """
         shift, moves = self._uncertain_reach, at_edge(points)
         x, y, z, moves = np.broadcast_arrays(points.x, points.y, points.z, moves)
         moved = partial(fields.stress_of_moved_edge, self._level, solid, layer=points.layer)
-        change = np.array(moved(shift, x, y, z, moves))
         near = np.hypot(self._to_edge(x, y), z) < numbers.NEAR_EDGE * self.diagnostics.patch_size + shift
-        near &= ~moves
-        if near.any():
-            other = moved(-shift, x[near], y[near], z[near], moves[near])
-            change[..., near] = np.maximum(change[..., near], other)
+        by_edge, by_move = moved(shift, x, y, z, moves)
+        change = np.maximum(by_edge, np.where(near, 0.0, by_move))
+        if (fixed := near & ~moves).any():
+            narrower, _ = moved(-shift, x[fixed], y[fixed], z[fixed], moves[fixed])
+            change[..., fixed] = np.maximum(change[..., fixed], narrower)
         return change
 
     @cached_property

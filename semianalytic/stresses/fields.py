@@ -74,20 +74,23 @@ def stress_of_moved_edge(
     z: Array,
     moves: NDArray[np.bool_],
     layer: int | None,
-) -> Array:
+) -> tuple[Array, Array]:
     """How much each stress [Pa] changes when a smooth edge widens by ``shift`` [m], (3, 3) + points.
 
-    moves : at which points x and y move with the edge.
+    moves : at which points x and y move with the edge; the second array is the change by their move alone.
     """
     X, Y, Z, where = _points(body, x, y, z, layer)
-    assert level.shape is not None
-    wider = level.shape.widened(shift)
-    moved = [
-        np.where(moves.ravel(), *pair) for pair in zip(wider.matching(level.shape, X, Y), (X, Y), strict=True)
-    ]
-    pressures, places = [rings_of(level.shape), rings_of(wider)], [(X, Y), (moved[0], moved[1])]
-    here, there = subsurface.stress(X, Y, Z, where, pressures=pressures, body=body, places=places)
-    return patch_field.tensor(np.abs(there - here).reshape(6, *np.shape(x)))
+    shape = level.shape
+    assert shape is not None
+    wider = shape.widened(shift)
+    to, at = wider.matching(shape, X, Y), (X, Y)
+    moved = np.where(moves.ravel(), to[0], X), np.where(moves.ravel(), to[1], Y)
+    pressures, places = [rings_of(shape), rings_of(wider)], [at, moved]
+    if moves.any():
+        pressures, places = [*pressures, rings_of(shape)], [*places, moved]
+    here, *others = subsurface.stress(X, Y, Z, where, pressures=pressures, body=body, places=places)
+    by_edge, by_move = (np.abs(one - here).reshape(6, *np.shape(x)) for one in (*others, here)[:2])
+    return patch_field.tensor(by_edge), patch_field.tensor(by_move)
 
 
 def stress_plane(level: Level, body: Body, z: float, layer: int | None) -> Array:
