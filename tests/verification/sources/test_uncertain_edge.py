@@ -1,0 +1,28 @@
+"""Stresses are uncertain by the contact's radius: at fixed places and at those that move with the edge."""
+
+import numpy as np
+import pytest
+
+from verification.problem.coated_contact import CoatedContact
+from verification.problem.point_answers import Points
+from verification.sources.exact_sources import solve_exactly
+from verification.sources.method_sources import solve_semianalytic
+
+PROBLEMS = {  # drawn at random, where one term each was left out: up to 1.25 U
+    "stiff layer, deep": CoatedContact(1e-3, 1.0, ((2.6e11, 0.2, 4e-5),), (2e10, 0.3), 0.01),
+    "film of ten patches": CoatedContact(
+        6.4077e-5, 2.60244e-7, ((1.12279e6, 0.5 - 2.75e-8, 8.07658e-9),), (3.15149e9, 0.476307)
+    ),
+}
+
+
+@pytest.mark.parametrize("frame", ["fixed", "edge"])
+@pytest.mark.parametrize("problem", PROBLEMS.values(), ids=PROBLEMS)
+def test_a_stress_is_within_its_uncertainty_however_far_from_the_edge(problem, frame):
+    exact, found = solve_exactly(problem), solve_semianalytic(problem)
+    a, (*_, h) = exact.contact_radius, problem.coatings[0]
+    x, z = (v.ravel() for v in np.meshgrid([0.9 * a, a, 1.3 * a], [0.3 * h, h, h + 0.3 * a]))
+    moved = found.contact_radius / a if frame == "edge" else 1.0
+    value, U = found.sample(Points(moved * x, 0.0, z, frame=frame), "stress")
+    true, V = exact.sample(Points(x, 0.0, z), "stress")
+    assert (np.abs(value - true) <= 0.5 * (U + V)).all()
