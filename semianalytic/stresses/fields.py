@@ -75,7 +75,7 @@ def stress_of_moved_edge(
     moves: NDArray[np.bool_],
     layer: int | None,
 ) -> tuple[Array, Array]:
-    """How much each stress [Pa] changes when a smooth edge widens by ``shift`` [m], (3, 3) + points.
+    """How much each stress [Pa] changes when an edge widens by ``shift`` [m] at its load, (3, 3) + points.
 
     moves : at which points x and y move with the edge; the second array is the change by their move alone.
     """
@@ -89,6 +89,7 @@ def stress_of_moved_edge(
     if moves.any():
         pressures, places = [*pressures, rings_of(shape)], [*places, moved]
     here, *others = subsurface.stress(X, Y, Z, where, pressures=pressures, body=body, places=places)
+    others[0] *= np.prod(shape.axes) / np.prod(wider.axes)
     by_edge, by_move = (np.abs(one - here).reshape(6, *np.shape(x)) for one in (*others, here)[:2])
     return patch_field.tensor(by_edge), patch_field.tensor(by_move)
 
