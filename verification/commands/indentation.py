@@ -14,7 +14,7 @@ from verification.cases.plausibility import beyond_limits
 from verification.cases.unit_numbers import in_si
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.known_folders import require_format
-from verification.commands.common.shared_options import AsJson, Flag
+from verification.commands.common.shared_options import AsJson, Flag, MaterialsFile
 from verification.commands.common.terminal import (
     named_table,
     print_json,
@@ -44,7 +44,7 @@ def indentation(
     depths: str | None = None,
     zero: Flag = False,
     beta: float = 1.0,
-    materials: Path = SHIPPED_MATERIALS,
+    materials: MaterialsFile = SHIPPED_MATERIALS,
     plot: Path | None = None,
     as_json: AsJson = False,
 ) -> int:

@@ -23,7 +23,7 @@ from verification.commands.common.answer_words import planes_text, spread_text, 
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.known_folders import require_format
 from verification.commands.common.named_files import SHIPPED, path_of
-from verification.commands.common.shared_options import AsJson, Flag, Strict
+from verification.commands.common.shared_options import AsJson, Flag, MaterialsFile, Strict
 from verification.commands.common.terminal import (
     print_error,
     print_json,
@@ -91,7 +91,7 @@ def solve(
     ball_coating: Annotated[list[str] | None, Parameter(negative="")] = None,
     check: Flag = False,
     every: Annotated[bool, Parameter(name="--all", negative="")] = False,
-    materials: Path = SHIPPED_MATERIALS,
+    materials: MaterialsFile = SHIPPED_MATERIALS,
     spread: Flag = False,
     thickness_of_sample: str | None = None,
     temperature_change: float | None = None,
@@ -125,8 +125,6 @@ def solve(
         friction: Coefficient f; the ball slides in +x, and the trailing edge is at x < 0.
         ball_coating: The same of a coating on the ball, from its surface inwards.
         check: Solve by finite elements too and show their difference.
-        materials: File of the materials that may be given by name alone, see coatcheck materials: "DLC 2 um",
-            "100Cr6".
         every: Show every layer of a stack of many, not the worst of each material alone.
         spread: Show how far the answer moves over the ranges of the materials given by name.
         thickness_of_sample: "5 mm", coatings included: what half-spaces cost is told for it, not for a disc

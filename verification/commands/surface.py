@@ -15,7 +15,7 @@ from verification.cases.unit_numbers import in_si
 from verification.commands.common.answer_words import spread_text, value_text
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.known_folders import require_format
-from verification.commands.common.shared_options import AsJson, Flag
+from verification.commands.common.shared_options import AsJson, Flag, MaterialsFile
 from verification.commands.common.terminal import (
     named_table,
     print_json,
@@ -49,7 +49,7 @@ def surface(
     unit: str | None = None,
     size: str | None = None,
     turn: Flag = False,
-    materials: Path = SHIPPED_MATERIALS,
+    materials: MaterialsFile = SHIPPED_MATERIALS,
     plot: Path | None = None,
     as_json: AsJson = False,
 ) -> int:
