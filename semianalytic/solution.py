@@ -222,7 +222,8 @@ class Solution:
             moved = np.max([np.abs(q - p) for q in widened], axis=0)
             at_surface = PatchPoints(x, y, body=points.body, frame=points.frame)
             U = self._of_patch_size(at_surface, "pressure") + other
-            return PatchAnswer(p, U + np.where(at_edge(points), 0.0, moved))
+            cut = at_edge(points) & (self._to_edge(x, y) < numbers.CUT * self.diagnostics.patch_size + shift)
+            return PatchAnswer(p, U + np.where(cut, 0.0, moved))
         changed = interpolated(self.nodes, self._refinement, x, y, order=1)
         least = other + numbers.BY_PATCHES[1] * self.peak_pressure
         return PatchAnswer(p, changed + 2 * least + self._rim(x, y, 0.0))
@@ -335,19 +336,22 @@ class Solution:
     def _uncertain_edge(self, solid: Body, points: Any) -> Array:
         """Change of the stress [Pa] by the uncertain radius, (3, 3) + points.
 
-        Of a wider contact at fixed places or, in the frame "edge", at places that move with it. Within
-        ``NEAR_EDGE`` patches of the edge it is not in proportion: at fixed places of a narrower one too.
-        Beyond, the pressure may be right where the edge is not: in the frame "edge" by the move alone too.
+        Of a wider contact of this load, at fixed places or, in the frame "edge", at places that move with it;
+        there by the move alone too, but in the patches that the edge cuts: the pressure may be right where
+        the edge is not. At fixed places within ``NEAR_EDGE`` patches of the edge, where it is not in
+        proportion, by its largest move in any direction, out and in.
         """
-        shift, moves = self._uncertain_reach, at_edge(points)
+        shift, moves = self._stated.contact_radius, at_edge(points)
         x, y, z, moves = np.broadcast_arrays(points.x, points.y, points.z, moves)
         moved = partial(fields.stress_of_moved_edge, self._level, solid, layer=points.layer)
-        near = np.hypot(self._to_edge(x, y), z) < numbers.NEAR_EDGE * self.diagnostics.patch_size + shift
+        reach, distance = self._uncertain_reach, np.hypot(self._to_edge(x, y), z)
+        patches = (distance - reach) / self.diagnostics.patch_size
         by_edge, by_move = moved(shift, x, y, z, moves)
-        change = np.maximum(by_edge, np.where(near, 0.0, by_move))
-        if (fixed := near & ~moves).any():
-            narrower, _ = moved(-shift, x[fixed], y[fixed], z[fixed], moves[fixed])
-            change[..., fixed] = np.maximum(change[..., fixed], narrower)
+        change = np.maximum(by_edge, np.where(patches < numbers.CUT, 0.0, by_move))
+        if (fixed := (patches < numbers.NEAR_EDGE) & ~moves).any():
+            for one in (-reach, reach):
+                by_edge, _ = moved(one, x[fixed], y[fixed], z[fixed], moves[fixed])
+                change[..., fixed] = np.maximum(change[..., fixed], by_edge)
         return change
 
     @cached_property

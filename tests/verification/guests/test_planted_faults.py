@@ -36,6 +36,7 @@ PRESSED = ("01_uncoated_steel", "05_ratio_4")  # whose solids are examined under
 # The faults that no answer shows, with the reason; all but the last are not caught inside either.
 UNSEEN = {
     "no_padding": "the exact edge profile replaces the deflection of the patches, and the result is right",
+    "no_padding_stress": "of a case with patches alone only an invariant sees it",
     "stiffness_step": "the stated uncertainty grows with the step and covers it, below the cap",
     "coarser_levels_misplaced": "only the uncertainty next to the edge grows, which exceeds the cap anyway",
     "refined_grid_grows": "the numbers move by 2e-8; only the uncertainty next to the edge grows",
