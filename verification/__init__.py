@@ -46,7 +46,7 @@ def state(
     *,
     ball: str | float | None = None,
     load: str | float | None = None,
-    substrate: str,
+    substrate: str | None = None,
     coatings: str | Sequence[str] = (),
     friction: float = 0.0,
     on_ball: str | Sequence[str] = (),
@@ -70,7 +70,7 @@ def state(
     text = case_text(
         sized,
         pressed,
-        substrate,
+        substrate or "",
         layers,
         friction,
         on,

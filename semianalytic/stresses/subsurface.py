@@ -121,7 +121,8 @@ def _summed(
     out = np.zeros((len(pressures), response.components, z.size))
     if not z.size:
         return out
-    _, first, foot = np.unique(np.stack(places[0]), axis=1, return_index=True, return_inverse=True)
+    at = np.stack([v for place in places for v in place])
+    _, first, foot = np.unique(at, axis=1, return_index=True, return_inverse=True)
     foot = foot.ravel()
     feet = [(x[first], y[first]) for x, y in places]
     body = response.body

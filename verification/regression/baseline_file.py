@@ -19,7 +19,7 @@ DIGITS = 0.01  # of the least change that counts
 class _Profile:
     """``Numbers`` without its points, which all profiles of a line share.
 
-    value : whole multiples of ``step`` [SI].   U : uncertainty to three digits.
+    value : whole multiples of ``step`` [SI].   U : uncertainty to two digits.
     """
 
     source: str
@@ -100,7 +100,7 @@ def points_by_line(case: str, found: tuple[Numbers, ...]) -> dict[str, Array]:
 
 
 def _profile(n: Numbers) -> _Profile:
-    U = None if n.uncertainty is None else _digits(n.uncertainty, 3)
+    U = None if n.uncertainty is None else _digits(n.uncertainty, 2)
     least = RELATIVE * n.scale if n.uncertainty is None else float(np.min(n.uncertainty))
     step = DIGITS * min(max(least, TOLERANCE * n.scale), RELATIVE * n.scale)
     # No step of a scale that is 0, NaN or infinite.

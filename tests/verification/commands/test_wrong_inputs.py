@@ -40,7 +40,7 @@ WRONG = [
     ({"--coating": "9 x (2 um, 180 GPa, 0.2, 1 um, 200 GPa, 0.2)"}, 'are separated by " / "'),
     ({"--coating": "2 um, 130-300 GPa, 0.2"}, '"130 GPa to 300 GPa" in --coating'),
     ({"--depth": "100 nm"}, ': --depth. Try: --approach "100 nm"'),
-    ({"--ball": None, "--radii": "5 mm, flat"}, "line contact; give it a crown"),
+    ({"--ball": None, "--radii": "5 mm, flat"}, "a contact along a line is not solved; give a crown"),
     ({"--substrate": "3 um 210 GPa, 0.3"}, "210 GPa"),
     ({"--coating": "a-C:H 3 um 150 GPa 0.25"}, "DLC 3 um, 450 GPa, 0.22"),
     ({"--coating": "180 GPa, 2 um, 0.2"}, "exchange"),

@@ -138,7 +138,9 @@ def test_the_numbers_come_out_of_the_page_as_csv(chromium: Page, report, tmp_pat
 
 def test_a_pointer_on_a_comparison_names_it_and_a_click_draws_it(chromium: Page, report):
     chromium.open(report, width=1360)
-    place = """(() => { const box = document.querySelector('.here svg.strip .ring').getBoundingClientRect();
+    place = """(() => { const ring = document.querySelector('.here svg.strip .ring');
+        ring.scrollIntoView({block: 'center'});
+        const box = ring.getBoundingClientRect();
         return [box.x + box.width / 2, box.y + box.height / 2]; })()"""
     x, y = chromium.evaluate(place)
     chromium.call("Input.dispatchMouseEvent", type="mouseMoved", x=x, y=y)

@@ -329,7 +329,8 @@ def _layers(coatings: list[Layer]) -> Coatings:
 
 def called(function: Callable[..., Any], problem: Load, parameter: dict[str, float]) -> Any:
     """``function`` called with the problem by keywords; one that it lacks must be nothing."""
-    given = keywords(problem)
+    given = {name: getattr(problem, name) for name in ("friction", "ball") if hasattr(problem, name)}
+    given |= keywords(problem)
     accepted = inspect.signature(function).parameters
     if not any(p.kind is inspect.Parameter.VAR_KEYWORD for p in accepted.values()):
         for name, nothing in (("friction", 0.0), ("coatings", ()), ("ball", None)):
