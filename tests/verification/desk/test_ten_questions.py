@@ -139,7 +139,7 @@ def test_5_mismatch_and_growth_are_added_to_the_stresses_of_the_contact():
 
 
 @pytest.mark.slow
-def test_6_twenty_pairs_of_layers_press_as_the_one_film_that_they_make_up():
+def test_6_pairs_of_layers_press_as_the_one_film_that_they_make_up():
     # p0 of steel on 4 um follows the modulus of the film within 1 %
     E = 469, 400
     moduli = [2 / sum(1 / one for one in E), sum(E) / 2]
