@@ -341,17 +341,24 @@ class Solution:
         the edge is not. At fixed places within ``NEAR_EDGE`` patches of the edge, where it is not in
         proportion, by its largest move in any direction, out and in.
         """
-        shift, moves = self._stated.contact_radius, at_edge(points)
+        level, moves = self._level, at_edge(points)
+        shift, reach = self._stated.contact_radius, self._uncertain_reach
         x, y, z, moves = np.broadcast_arrays(points.x, points.y, points.z, moves)
-        moved = partial(fields.stress_of_moved_edge, self._level, solid, layer=points.layer)
-        reach, distance = self._uncertain_reach, np.hypot(self._to_edge(x, y), z)
-        patches = (distance - reach) / self.diagnostics.patch_size
-        by_edge, by_move = moved(shift, x, y, z, moves)
-        change = np.maximum(by_edge, np.where(patches < numbers.CUT, 0.0, by_move))
+        patches = (np.hypot(self._to_edge(x, y), z) - reach) / self.diagnostics.patch_size
+        to = (x, y)
+        if moves.any():
+            assert level.shape is not None
+            along = level.shape.widened(shift).matching(level.shape, x, y)
+            to = (np.where(moves, along[0], x), np.where(moves, along[1], y))
+        asked = [(shift, to), (0.0, to)] if moves.any() else [(shift, to)]
+        change, *by_move = fields.stress_changes(level, solid, asked, x, y, z, points.layer)
+        for one in by_move:
+            change = np.maximum(change, np.where(patches < numbers.CUT, 0.0, one))
         if (fixed := (patches < numbers.NEAR_EDGE) & ~moves).any():
-            for one in (-reach, reach):
-                by_edge, _ = moved(one, x[fixed], y[fixed], z[fixed], moves[fixed])
-                change[..., fixed] = np.maximum(change[..., fixed], by_edge)
+            at = x[fixed], y[fixed]
+            out_and_in = [(one, at) for one in (-reach, reach) if one != shift]
+            others = fields.stress_changes(level, solid, out_and_in, *at, z[fixed], points.layer)
+            change[..., fixed] = np.maximum(change[..., fixed], others.max(axis=0))
         return change
 
     @cached_property

@@ -88,9 +88,10 @@ class ChangeTable:
         for top, bottom in pairwise(interfaces):
             ends = [top, bottom] if np.isfinite(bottom) else [top, max(2 * top, below[-1])]
             depths.append(np.unique([*ends, *below[(below > ends[0]) & (below < ends[1])]]))
-        even = not (turning or shape.twin or np.any(np.array(shape.harmonics) % 2))
+        in_x, in_y = shape.mirrors
+        even = in_x and not turning
         angles = np.pi / 4 * np.arange(8)  # of one of the parts that are mirror images of each other
-        if min(shape.harmonics) >= 0:
+        if in_y:
             angles = angles[: (1 if even else 5) : 2] if shape.round else angles[: 3 if even else 5]
         layer = np.repeat(np.arange(len(depths)), [one.size for one in depths])
         s, angle, z = np.meshgrid(shares, angles, np.concatenate(depths), indexing="ij")

@@ -53,6 +53,7 @@ def state(
     approach: str | float | None = None,
     radii: str | None = None,
     against: str | None = None,
+    roller: str | None = None,
     temperature_change: float | None = None,
 ) -> Case:
     """A problem in the words of the options of ``coatcheck solve``, to be solved, answered or compared.
@@ -78,6 +79,7 @@ def state(
         temperature_change=temperature_change,
         radii=radii,
         against=against,
+        roller=roller,
     )
     return parse_case(text.encode(), Path("words"))
 

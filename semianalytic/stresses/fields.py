@@ -65,33 +65,29 @@ def _add(
             total += on_patches(*place, *points[2:], grid_x=level.nodes, pressure=pressure, body=body)
 
 
-def stress_of_moved_edge(
+def stress_changes(
     level: Level,
     body: Body,
-    shift: float,
+    moves: Sequence[tuple[float, tuple[Array, Array]]],
     x: Array,
     y: Array,
     z: Array,
-    moves: NDArray[np.bool_],
     layer: int | None,
-) -> tuple[Array, Array]:
-    """How much each stress [Pa] changes when an edge widens by ``shift`` [m] at its load, (3, 3) + points.
+) -> Array:
+    """How much each stress [Pa] changes by each of ``moves``, (moves, 3, 3) + points.
 
-    moves : at which points x and y move with the edge; the second array is the change by their move alone.
+    moves : how much wider [m] the smooth edge is, at the same load, and the places x, y [m] instead of those.
     """
     X, Y, Z, where = _points(body, x, y, z, layer)
     shape = level.shape
     assert shape is not None
-    wider = shape.widened(shift)
-    to, at = wider.matching(shape, X, Y), (X, Y)
-    moved = np.where(moves.ravel(), to[0], X), np.where(moves.ravel(), to[1], Y)
-    pressures, places = [rings_of(shape), rings_of(wider)], [at, moved]
-    if moves.any():
-        pressures, places = [*pressures, rings_of(shape)], [*places, moved]
+    shapes = [shape.widened(shift) if shift else shape for shift, _ in moves]
+    places = [(X, Y), *((u.ravel(), v.ravel()) for _, (u, v) in moves)]
+    pressures = [rings_of(one) for one in (shape, *shapes)]
     here, *others = subsurface.stress(X, Y, Z, where, pressures=pressures, body=body, places=places)
-    others[0] *= np.prod(shape.axes) / np.prod(wider.axes)
-    by_edge, by_move = (np.abs(one - here).reshape(6, *np.shape(x)) for one in (*others, here)[:2])
-    return patch_field.tensor(by_edge), patch_field.tensor(by_move)
+    of_load = [np.prod(shape.axes) / np.prod(one.axes) for one in shapes]
+    changes = [np.abs(share * other - here) for share, other in zip(of_load, others, strict=True)]
+    return np.stack([patch_field.tensor(one.reshape(6, *np.shape(x))) for one in changes])
 
 
 def stress_plane(level: Level, body: Body, z: float, layer: int | None) -> Array:

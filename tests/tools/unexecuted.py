@@ -7,9 +7,6 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
-
-from cyclopts import Parameter
 
 from verification.commands.common.terminal import print_out
 
@@ -32,7 +29,7 @@ NO_STATEMENT = (
 )
 
 
-def unexecuted(*, traces: Annotated[Path | None, Parameter()] = None) -> int:
+def unexecuted(*, traces: Path | None = None) -> int:
     """List the statements of both methods that neither the default run nor the fast tests execute.
 
     Refusals, which raise an error, are left out: tests of bad input reach them. Without --traces both are run

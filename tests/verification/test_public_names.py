@@ -1,5 +1,6 @@
 """The names that a user of the package meets first: read_case, solve, compare."""
 
+import inspect
 import pydoc
 from xml.etree import ElementTree
 
@@ -8,6 +9,7 @@ from quick_case import QUICK
 
 import semianalytic
 import verification
+from verification.desk.case_wording import case_text
 from verification.judging.outcome import Outcome
 from verification.sources.references import integral_equation
 
@@ -66,3 +68,10 @@ def test_compare_judges_the_claims_of_a_case(tmp_path):
     path.write_text(QUICK, encoding="utf-8")
     found = verification.compare(verification.read_case(path))
     assert [verdict.outcome for _, verdict in found.verdicts] == [Outcome.AGREES]
+
+
+def test_a_problem_in_python_takes_every_word_of_the_command_line():
+    words, known = (set(inspect.signature(one).parameters) for one in (case_text, verification.state))
+    assert words - known == {"materials"}
+    rolled = verification.state(roller="R = 5 mm, crown 2 m", load="10 N", substrate="210 GPa, 0.3")
+    assert rolled.problem.indenter == ("ellipsoid", (5e-3, 2.0))

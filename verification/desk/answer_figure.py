@@ -12,12 +12,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, SubFigure
 
 from verification.cases.case_file import Case
-from verification.desk.answer_stresses import StressCourse, first_principal
+from verification.desk.answer_stresses import StressCourse
 from verification.desk.contact_answer import ContactAnswer, Names, with_name
 from verification.desk.stack_text import conditions, stack, units_of
 from verification.problem.display_units import Units
 from verification.problem.point_answers import FLAT
-from verification.problem.quantity import von_mises
+from verification.problem.quantity import first_principal, von_mises
 from verification.running.checked_files import write_atomically
 from verification.sources.source_registry import METHODS, solvers
 from verification.study.largest_stresses import Measure

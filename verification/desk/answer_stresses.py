@@ -22,7 +22,7 @@ from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, ContactSolution
 from verification.problem.either_body import on_body
 from verification.problem.point_answers import BALL, Points
-from verification.problem.quantity import largest_shear, largest_strain, von_mises
+from verification.problem.quantity import first_principal, largest_shear, largest_strain, von_mises
 from verification.sampling.along_axis import AlongAxis
 from verification.sampling.largest_tension import Search
 from verification.study.friction_planes import (
@@ -81,12 +81,6 @@ class StressCourse:
     where: str
     x: Array
     stress: Array
-
-
-def first_principal(s: Array) -> Array:
-    """The largest principal stress [Pa] from xx, yy, zz, xz, (4, ...), in the plane of symmetry."""
-    xx, yy, zz, xz = s
-    return np.maximum(yy, (xx + zz) / 2 + np.hypot((xx - zz) / 2, xz))
 
 
 def stresses(

@@ -168,6 +168,23 @@ def largest_shear(sigma: Array | Sequence[Array]) -> Array:
     return (principal.max(axis=0) - principal.min(axis=0)) / 2
 
 
+def first_principal(sigma: Array | Sequence[Array]) -> Array:
+    """Largest principal stress from stresses in the order of ``STRESSES``, (6, ...), or ``IN_PLANE``; [Pa].
+
+    Of six the mean plus 2 sqrt(J2/3) cos(phi), cos(3 phi) = (J3/2) (3/J2)^(3/2), J2 and J3 the invariants of
+    the deviator: O. K. Smith, Commun. ACM 4 (1961) 168.
+    """
+    if len(sigma) == len(IN_PLANE):
+        return np.asarray(_principal(sigma).max(axis=0))
+    s = np.asarray(sigma)
+    mean = s[:3].sum(axis=0) / 3
+    (xx, yy, zz), (xz, xy, yz) = s[:3] - mean, s[3:]
+    J2 = von_mises(s) ** 2 / 3
+    J3 = xx * yy * zz + 2 * xy * yz * xz - xx * yz**2 - yy * xz**2 - zz * xy**2
+    cosine = np.clip(1.5 * 3**0.5 * J3 / np.maximum(J2, 1e-300) ** 1.5, -1.0, 1.0)
+    return np.asarray(mean + 2 * np.sqrt(J2 / 3) * np.cos(np.arccos(cosine) / 3))
+
+
 def _principal(sigma: Array | Sequence[Array]) -> Array:
     """The principal stresses in the plane of symmetry y = 0, (3, ...), in no order."""
     xx, yy, zz, xz = sigma

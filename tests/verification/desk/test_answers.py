@@ -7,10 +7,9 @@ import pytest
 from scipy.optimize import minimize_scalar
 
 from verification.cases.graded_coating import GradedCourse, moduli
-from verification.desk.answer_stresses import first_principal
 from verification.desk.contact_answer import answer, differences, summary
 from verification.problem.coated_contact import CoatedContact
-from verification.problem.quantity import largest_shear, von_mises
+from verification.problem.quantity import first_principal, largest_shear, von_mises
 from verification.sources.source_registry import EXACT
 
 BARE = CoatedContact(10e-3, 20.0, (), (210e9, 0.3))

@@ -9,10 +9,9 @@ from case_texts import case_text
 
 from verification.cases.case_file import parse_case
 from verification.cases.toml_file import CaseError
-from verification.desk.answer_stresses import first_principal
 from verification.desk.contact_answer import answer
 from verification.problem.coated_contact import CoatedContact
-from verification.problem.quantity import von_mises
+from verification.problem.quantity import first_principal, von_mises
 from verification.sources.source_registry import SOURCES
 from verification.study.friction_planes import in_plane
 

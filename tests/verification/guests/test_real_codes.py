@@ -1,4 +1,4 @@
-"""Codes of others on record: the records are those of the adapters, and repeat where a code installs."""
+"""Codes of others on record: each record is its adapter's, and repeats where the code installs."""
 
 import json
 import shutil

@@ -1,4 +1,4 @@
-"""Studies of ellipses: the largest stresses are those of solve, and of either plane without friction."""
+"""Studies of ellipses find the largest stresses that solve finds, without friction in either plane."""
 
 from pathlib import Path
 

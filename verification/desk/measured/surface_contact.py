@@ -17,7 +17,7 @@ from verification.desk.answer_stresses import Extreme
 from verification.desk.contact_answer import ContactAnswer
 from verification.desk.measured.surface_map import SurfaceMap
 from verification.problem.array_types import Array
-from verification.problem.quantity import SCALARS, STRESSES, von_mises
+from verification.problem.quantity import SCALARS, STRESSES, first_principal, von_mises
 from verification.study.largest_stresses import Measure
 
 MOST_PATCHES, DEPTHS, FINE = 513, 4, 33  # a side; planes below the contact; depths between two of them
@@ -59,17 +59,7 @@ def pressed(surface: SurfaceMap, case: Case) -> SurfaceContact:
     return SurfaceContact(solution, answer, (np.pi * a * a, 2 * np.pi * a * U))
 
 
-def _first_principal(s: Array) -> Array:
-    """The largest principal stress [Pa] from stresses in the order of ``STRESSES``, (6, ...)."""
-    mean = s[:3].sum(axis=0) / 3
-    (xx, yy, zz), (xz, xy, yz) = s[:3] - mean, s[3:]
-    J2 = von_mises(s) ** 2 / 3
-    J3 = xx * yy * zz + 2 * xy * yz * xz - xx * yz**2 - yy * xz**2 - zz * xy**2
-    cosine = np.clip(1.5 * 3**0.5 * J3 / np.maximum(J2, 1e-300) ** 1.5, -1.0, 1.0)
-    return np.asarray(mean + 2 * np.sqrt(J2 / 3) * np.cos(np.arccos(cosine) / 3))
-
-
-WITHIN: dict[str, Measure] = {"sigma_1": _first_principal, "von_mises": von_mises}
+WITHIN: dict[str, Measure] = {"sigma_1": first_principal, "von_mises": von_mises}
 ACROSS: dict[str, Measure] = {"|sigma_xz|": lambda s: np.hypot(s[3], s[5]), "sigma_zz": lambda s: s[2]}
 
 

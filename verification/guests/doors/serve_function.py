@@ -327,13 +327,16 @@ def _layers(coatings: list[Layer]) -> Coatings:
     return tuple((c.E, c.nu, c.thickness or 0.0) for c in coatings)
 
 
+# What a problem may lack: given to every solver that takes it, left out where one does not.
+NOTHING: dict[str, Any] = {"friction": 0.0, "coatings": (), "ball": None}
+
+
 def called(function: Callable[..., Any], problem: Load, parameter: dict[str, float]) -> Any:
     """``function`` called with the problem by keywords; one that it lacks must be nothing."""
-    given = {name: getattr(problem, name) for name in ("friction", "ball") if hasattr(problem, name)}
-    given |= keywords(problem)
+    given = {name: nothing for name, nothing in NOTHING.items() if hasattr(problem, name)} | keywords(problem)
     accepted = inspect.signature(function).parameters
     if not any(p.kind is inspect.Parameter.VAR_KEYWORD for p in accepted.values()):
-        for name, nothing in (("friction", 0.0), ("coatings", ()), ("ball", None)):
+        for name, nothing in NOTHING.items():
             if name in given and name not in accepted and given[name] == nothing:
                 del given[name]
     return function(**given, **parameter)
