@@ -35,6 +35,7 @@ from skfem import (
 )
 
 from fem_reference import element_numbers as chosen
+from fem_reference.elasticity.linear_system import minimum_degree
 from fem_reference.meshing.location import Locator, Uncached
 from fem_reference.meshing.mesh import MeridianMesh
 
@@ -130,6 +131,15 @@ class Discretisation(Uncached):
     def outer(self) -> np.ndarray:
         far = self.locations.max(axis=1)[:, None] * (1 - 1e-9)
         return np.asarray(self.basis.get_dofs(lambda x: np.any(x >= far, axis=0)).all())
+
+    @cached_property
+    def elimination(self) -> np.ndarray:
+        """Unknowns of one field on the sides of triangles, in an order that fills a factor little."""
+        sides = self.basis.element_dofs[: self.basis.Nbfun - self.basis.elem.interior_dofs].T
+        used, local = np.unique(sides, return_inverse=True)
+        local = local.reshape(sides.shape)
+        ones = np.ones((*sides.shape, sides.shape[1]))
+        return np.asarray(used[minimum_degree(_assembled(ones, local, used.size))])
 
     def stiffness(self, materials: tuple[tuple[float, float], ...], harmonic: float) -> sp.csc_matrix:
         """Stiffness matrix, (n, n) for field vectors (n,): virtual work over the angular factor of all terms.

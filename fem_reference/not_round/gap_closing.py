@@ -138,22 +138,22 @@ def closed(
     for step in range(1, chosen.MOST_STEPS + 1):
         steps = step
         at = pressure.quadrature(one.vertices, last)
-        root, s = np.sqrt(1 - at.s**2), at.s
-        trial = root * pressure.polynomials(s, at.tau, pressure.degree)
-        slope = _slope(pressure, at)
-        moved = np.array([-slope * at.s ** _power(n) * np.cos(n * at.tau) for n in pressure.waves])
-        tests = root**chosen.WEIGHT * pressure.polynomials(s, at.tau, pressure.degree + chosen.MORE)
-        # orthonormal with the weight root^5: the squares of the products then add up to the gap's norm
-        products = (tests * at.weights / root**chosen.WEIGHT) @ tests.T
-        tests = np.linalg.solve(np.linalg.cholesky(products), tests)
-        forces = np.concatenate([trial, moved, tests]) * at.weights
+        root, most = np.sqrt(1 - at.s**2), pressure.degree + chosen.MORE
+        tests = pressure.polynomials(at.s, at.tau, most)
+        trial = tests[[pressure.terms(most).index(one) for one in pressure.terms(pressure.degree)]]
+        slope = _slope(pressure, at, trial)
+        moved = [-slope * at.s ** _power(n) * np.cos(n * at.tau) for n in pressure.waves]
         n, k = len(trial), len(trial) + len(moved)
+        forces = np.concatenate([trial * root, moved, tests * root**chosen.WEIGHT])
+        forces *= at.weights
+        # orthonormal with the weight root^5: the squares of the products then add up to the gap's norm
+        orthonormal = np.linalg.inv(np.linalg.cholesky(forces[k:] @ tests.T))
         L = one.nodal_loads(at.r, at.theta, forces.reshape(-1, *at.theta.shape), last)
-        total = forces.sum(axis=1)
-        work = np.einsum("mit,mic->tc", L[:, :, k:], matrices @ L[:, :, :k])
+        total, raised = forces.sum(axis=1), forces[k:] @ height(at.x, at.y)
+        work = np.einsum("mit,mic->tc", L[:, :, k:], matrices @ L[:, :, :k], optimize=True)
         A = np.zeros((len(tests) + 1, k + 1))
-        A[:-1, :k], A[:-1, k], A[-1, :k] = work, -total[k:], total[:k]
-        b = np.append(-forces[k:] @ height(at.x, at.y), load)
+        A[:-1, :k], A[:-1, k], A[-1, :k] = orthonormal @ work, -orthonormal @ total[k:], total[:k]
+        b = np.append(-orthonormal @ raised, load)
         # the load counts so much that it is kept
         heavy = chosen.FIRM * np.abs(A[:-1, k]).max() / np.abs(A[-1]).max()
         A[-1], b[-1] = heavy * A[-1], heavy * b[-1]
@@ -176,12 +176,12 @@ def _power(n: int) -> int:
     return n + 1 if n > 2 else (n + 1) % 2
 
 
-def _slope(pressure: StarPressure, at: Quadrature) -> np.ndarray:
-    """dp/ds at the points, the polynomial's by differences."""
+def _slope(pressure: StarPressure, at: Quadrature, trial: np.ndarray) -> np.ndarray:
+    """dp/ds at the points, that of the polynomials ``trial`` by differences."""
     h = 1e-5
     root = np.sqrt(1 - at.s**2)
-    below, Q, above = (
+    below, above = (
         np.tensordot(pressure.coefficients, pressure.polynomials(at.s + e, at.tau, pressure.degree), 1)
-        for e in (-h, 0.0, h)
+        for e in (-h, h)
     )
-    return np.asarray(-at.s / root * Q + root * (above - below) / (2 * h))
+    return np.asarray(-at.s / root * (pressure.coefficients @ trial) + root * (above - below) / (2 * h))

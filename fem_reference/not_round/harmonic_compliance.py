@@ -6,8 +6,9 @@ Finite elements see a pressure as its products with the shape functions phi_i on
 
     L_mi = int p cos(m theta) phi_i(r) dA,   u_z(r, theta) = sum_m cos(m theta) sum_ij phi_i(r) S_m,ij L_mj,
 
-with one matrix S_m for each harmonic, found by as many right-hand sides as there are nodes below the
-pressure. So  int p u_z' dA = sum_m L_m . S_m L'_m  holds for any two pressures without a further solution.
+with one matrix S_m for each harmonic: the inverse of what is left of the stiffness matrix when all unknowns
+but u_z below the pressure are eliminated. So  int p u_z' dA = sum_m L_m . S_m L'_m  holds for any two
+pressures without a further solution.
 
 The stiffness matrix is a polynomial in m, so S_m depends smoothly on m, which need not be an integer: beyond
 ``DIRECT`` m S_m is interpolated in log m between Chebyshev's points. A shorter wave is stiffer in proportion.
@@ -35,15 +36,13 @@ from fem_reference.scaling import LayeredSolid
 class HarmonicCompliance:
     """Response to the pressures that act on the unknowns ``loaded`` of one field on the surface of one mesh.
 
-    solved : m of each solution.  fields : by unit loads of it, as ``Meridian.solve``, (unknowns, nodes).
-    meridians : of the same m, factorised.  last, fold : harmonics 0, fold, 2 fold, .., last
+    solved : m of each of the ``meridians``, factorised.  last, fold : harmonics 0, fold, 2 fold, .., last
     """
 
     solid: LayeredSolid
     discretisation: Discretisation
     loaded: np.ndarray
     solved: tuple[float, ...]
-    fields: tuple[np.ndarray, ...]
     meridians: tuple["Meridian", ...]
     last: int
     fold: int
@@ -66,16 +65,20 @@ class HarmonicCompliance:
     @cached_property
     def matrices(self) -> np.ndarray:
         """S_m, (harmonics, nodes, nodes)."""
-        found = [one.deflection(u, self.loaded) for one, u in zip(self.meridians, self.fields, strict=True)]
-        return np.array([sum(w * found[k] for k, w in _weights(self.solved, m)) for m in self.harmonics])
+        found = np.array([one.compliance for one in self.meridians])
+        weights = np.array([_weights(self.solved, int(m)) for m in self.harmonics])
+        return np.asarray(np.tensordot(weights, found, 1))
 
     def nodal_loads(self, r: np.ndarray, theta: np.ndarray, forces: np.ndarray, last: int) -> np.ndarray:
         """L of ``forces`` (columns, arcs, points), (harmonics to ``last``, nodes, columns).
 
         r, theta : radius of each arc (arcs,) and angles on it (arcs, points)
         """
-        onto, at_arcs = self._shapes(r).T, forces.transpose(1, 2, 0)
-        return np.array([onto @ (wave[:, None, :] @ at_arcs)[:, 0] for wave in self._waves(theta, last)])
+        on_arcs = np.concatenate(
+            [waves @ forces[:, some].transpose(1, 2, 0) for some, waves in self._waves(theta, last)]
+        )
+        L = self._shapes(r).T @ on_arcs.reshape(r.size, -1)
+        return np.asarray(L.reshape(-1, *on_arcs.shape[1:]).swapaxes(0, 1))
 
     def products(self, r: np.ndarray, values: np.ndarray) -> np.ndarray:
         """sum_k values_mk phi_i(r_k), (harmonics, nodes), of values (harmonics, radii)."""
@@ -83,46 +86,44 @@ class HarmonicCompliance:
 
     def deflection(self, at_nodes: np.ndarray, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
         """u_z on arcs as in ``nodal_loads``, (arcs, points), of its amplitudes (nodes, harmonics)."""
-        of_arcs = self._shapes(r) @ at_nodes
-        u = np.zeros(theta.shape)
-        for amplitude, wave in zip(of_arcs.T, self._waves(theta, self.last), strict=True):
-            u += amplitude[:, None] * wave
-        return u
+        of_arcs = (self._shapes(r) @ at_nodes)[:, None]
+        found = [of_arcs[some] @ waves for some, waves in self._waves(theta, self.last)]
+        return np.concatenate(found)[:, 0] if found else np.zeros(theta.shape)
 
-    def displacements(self, loads: np.ndarray) -> dict[int, np.ndarray]:
-        """Field vector of every harmonic under a pressure of ``loads`` (harmonics, nodes)."""
-        pressed = {int(m): L for m, L in zip(self.harmonics, loads, strict=True) if L.any()}
+    def displacements(self, loads: np.ndarray, friction: float = 0.0) -> dict[int, np.ndarray]:
+        """Field vector of every harmonic under a pressure and ``friction`` times it along x.
 
-        def respond(k: int, columns: np.ndarray) -> np.ndarray:
-            return self.meridians[k].extended(self.fields[k] @ columns, _normal(columns))
-
-        return _superposed(self.solved, pressed, respond)
-
-    def sliding(self, loads: np.ndarray, friction: float) -> dict[int, np.ndarray]:
-        """Fields under the traction ``friction`` times the pressure along x."""
+        loads : of the pressure, (harmonics, nodes)
+        """
         L = np.zeros((self.last + 3, self.nodes.size))
         L[self.harmonics] = loads
-        pulled: dict[int, np.ndarray] = {}
+        acting: dict[int, np.ndarray] = {}
         for m in range(self.last + 2):
-            below, above = L[abs(m - 1)], L[m + 1]
-            tractions = friction / 2 * np.array([0 * below, below + above, above - below])
+            below, above = friction / 2 * L[abs(m - 1)], friction / 2 * L[m + 1]
+            tractions = np.array([L[m], below + above, above - below])
             if tractions.any():
-                pulled[m] = tractions
+                acting[m] = tractions
         known = dict(zip(self.solved, self.meridians, strict=True))
-        solved = (*(m for m in pulled if m < chosen.DIRECT), *(m for m in self.solved if m >= chosen.DIRECT))
+        solved = (*(m for m in acting if m < chosen.DIRECT), *(m for m in self.solved if m >= chosen.DIRECT))
 
         def respond(k: int, columns: np.ndarray) -> np.ndarray:
-            one = known.get(solved[k]) or Meridian.of(self.solid, self.discretisation, solved[k])
-            return one.extended(one.solve(self.loaded, columns), columns)
+            one = known.get(solved[k]) or Meridian.of(self.solid, self.discretisation, solved[k], self.loaded)
+            return one.extended(one.solve(columns), columns)
 
-        return _superposed(solved, pulled, respond)
+        return _superposed(solved, acting, respond)
 
-    def _waves(self, theta: np.ndarray, last: int) -> Iterator[np.ndarray]:
-        """cos(m theta) of the harmonics m to ``last``."""
-        wave, turn = np.ones(theta.shape, dtype=complex), np.exp(1j * self.fold * theta)
-        for _ in range(0, last + 1, self.fold):
-            yield wave.real
-            wave = wave * turn
+    def _waves(self, theta: np.ndarray, last: int) -> Iterator[tuple[slice, np.ndarray]]:
+        """cos(m theta) of the harmonics to ``last`` on some arcs after others, (arcs, harmonics, points)."""
+        count = last // self.fold + 1
+        for begin in range(0, len(theta), chosen.COLUMNS_AT_ONCE):
+            some = slice(begin, begin + chosen.COLUMNS_AT_ONCE)
+            turn = np.exp(1j * self.fold * theta[some])
+            waves = np.empty((len(turn), count, theta.shape[1]))
+            power = np.ones_like(turn)
+            for k in range(count):
+                waves[:, k] = power.real
+                power *= turn
+            yield some, waves
 
     def _shapes(self, r: np.ndarray) -> sp.csr_matrix:
         """phi_i(r), (points, nodes); r between the first node and the last."""
@@ -154,9 +155,8 @@ def harmonic_compliance(
     solved = (*(m for m in wanted if m < chosen.DIRECT), *_high(last + 1, density))
     first = np.searchsorted(d.contact_vertices, inner, side="right") - 1
     loaded = d.contact[d.order * first :]
-    meridians = tuple(Meridian.of(solid, d, m) for m in solved)
-    fields = tuple(one.solve(loaded, _normal(np.eye(loaded.size))) for one in meridians)
-    return HarmonicCompliance(solid, d, loaded, solved, fields, meridians, last, fold)
+    meridians = tuple(Meridian.of(solid, d, m, loaded) for m in solved)
+    return HarmonicCompliance(solid, d, loaded, solved, meridians, last, fold)
 
 
 def _high(last: int, density: float) -> list[float]:
@@ -170,50 +170,54 @@ def _high(last: int, density: float) -> list[float]:
     return [chosen.DIRECT, *np.exp(low + (high - low) * inner).tolist(), last]
 
 
-def _weights(solved: tuple[float, ...], m: int) -> list[tuple[int, float]]:
-    """Numbers of the solutions whose weighted sum is that of m: itself, or Lagrange's of m times them."""
+def _weights(solved: tuple[float, ...], m: int) -> np.ndarray:
+    """Weights of the solutions in that of m: itself, or Lagrange's of m times them."""
     if m in solved:
-        return [(solved.index(m), 1.0)]
+        return np.array([float(one == m) for one in solved])
     first = sum(one < chosen.DIRECT for one in solved)
     x = np.log(solved[first:])
     away = np.log(m) - x
     lagrange = [np.prod(np.delete(away, k)) / np.prod(np.delete(x[k] - x, k)) for k in range(x.size)]
-    return [(first + k, float(w) * solved[first + k] / m) for k, w in enumerate(lagrange)]
+    return np.concatenate([np.zeros(first), np.array(lagrange) * np.array(solved[first:]) / m])
 
 
 def _superposed(
     solved: tuple[float, ...], loads: dict[int, np.ndarray], respond: Callable[[int, np.ndarray], np.ndarray]
 ) -> dict[int, np.ndarray]:
-    """Field vector of every m under its ``loads``, (.., nodes).
+    """Field vector of every m under its ``loads``, (3, nodes).
 
-    respond : field vectors (n, columns) of a solution, by number, under loads (.., nodes, columns)
+    respond : field vectors (n, columns) of a solution, by number, under loads (3, nodes, columns)
     """
-    weights = {m: dict(_weights(solved, m)) for m in loads}
+    found = {m: respond(solved.index(m), loads[m][..., None])[:, 0] for m in loads if m in solved}
     between = [m for m in loads if m not in solved]
-    found: dict[int, np.ndarray] = {}
-    total: Any = 0.0
-    for k, one in enumerate(solved):
-        direct = [m for m in loads if m == one]
-        wanted = direct + (between if one >= chosen.DIRECT else [])
-        if wanted:
-            u = respond(k, np.stack([weights[m][k] * loads[m] for m in wanted], axis=-1))
-            found |= {m: u[:, j] for j, m in enumerate(direct)}
-            total += u[:, len(direct) :] if one >= chosen.DIRECT else 0.0
-    return found | dict(zip(between, total.T if between else (), strict=True))
+    if between:
+        # these loads are sums of fewer: as many as have a singular value above rounding
+        columns = np.stack([loads[m] for m in between], axis=-1)
+        flat = columns.reshape(-1, len(between))
+        U, size, V = np.linalg.svd(flat, full_matrices=False)
+        rank = int(np.count_nonzero(size > size[0] * max(flat.shape) * np.finfo(float).eps))
+        fewer = (U * size)[:, :rank].reshape(*columns.shape[:-1], rank)
+        weights = np.array([_weights(solved, m) for m in between]).T
+        total: Any = 0.0
+        for k in np.flatnonzero(weights.any(axis=1)):
+            total += respond(int(k), fewer) @ (V[:rank] * weights[k])
+        found |= dict(zip(between, total.T, strict=True))
+    return found
 
 
 @dataclass(frozen=True, eq=False)
 class Meridian:
-    """The meridian problem of one m, factorised."""
+    """The meridian problem of one m, factorised, for loads on the unknowns ``loaded`` of one field."""
 
     solid: LayeredSolid
     discretisation: Discretisation
     harmonic: float
+    loaded: np.ndarray
     skeleton: Skeleton
     factor: ConstrainedFactor
 
     @classmethod
-    def of(cls, solid: LayeredSolid, d: Discretisation, m: float) -> "Meridian":
+    def of(cls, solid: LayeredSolid, d: Discretisation, m: float, loaded: np.ndarray) -> "Meridian":
         count = 2 if m == 0 else 3
         axis: tuple[int, ...] = (0,) if m == 0 else (0, 2) if m == 1 else (0, 1, 2)
         fixed = [field * d.N + d.axis for field in axis]
@@ -223,20 +227,38 @@ class Meridian:
             still, cells = np.flatnonzero(beyond), np.flatnonzero(~beyond[d.basis.element_dofs].all(axis=0))
         K = d.skeleton(solid.materials, m, cells)
         fixed += [field * d.N + still for field in range(count)]
-        return cls(solid, d, m, K, ConstrainedFactor.of(K.matrix, np.concatenate([*fixed, K.inner.ravel()])))
+        order = (d.elimination[:, None] + d.N * np.arange(count)).ravel()
+        normal = (count - 1) * d.N + loaded
+        given = np.concatenate(fixed)
+        order, normal = (of[~np.isin(of, given)] for of in (order, normal))
+        return cls(solid, d, m, loaded, K, ConstrainedFactor.of(K.matrix, order, normal))
 
-    def solve(self, loaded: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """Free unknowns (free, columns) under ``loads`` (3, nodes, columns) normal, radial and angular.
+    @property
+    def _work(self) -> float:
+        """Angular factor of the virtual work of harmonic loads."""
+        return 2 * np.pi if self.harmonic == 0 else np.pi
 
-        loaded : unknowns of one field at the nodes
-        """
+    def solve(self, loads: np.ndarray) -> np.ndarray:
+        """Free unknowns (free, columns) under ``loads`` (3, nodes, columns) normal, radial and angular."""
         m, N = self.harmonic, self.discretisation.N
-        normal, radial, angular = loads / (2 * np.pi if m == 0 else np.pi)
+        normal, radial, angular = loads / self._work
         # virtual work R U + T V with U = S - V
         load = [radial, normal] if m == 0 else [radial, angular - radial, normal]
-        at = np.concatenate([field * N + loaded for field in range(len(load))])
+        at = np.concatenate([field * N + self.loaded for field in range(len(load))])
         far = (self._far, _resultant(m, loads)) if m < 2 else None
         return self.factor.solve(at, np.concatenate(load), far)
+
+    @property
+    def compliance(self) -> np.ndarray:
+        """u_z at the nodes by unit normal loads on each, (nodes, nodes)."""
+        row = self.factor.rows(self.skeleton.matrix.shape[0] - self.discretisation.N + self.loaded)
+        S = np.zeros((row.size, row.size))
+        free = np.flatnonzero(row >= 0)
+        S[np.ix_(free, free)] = self.factor.compliance / self._work
+        if self.harmonic == 0:  # moved by what is given far away, the same for every load
+            nothing = np.zeros((3, row.size, 1))
+            S[free] += self.factor.solve(self.loaded, nothing[0], (self._far, np.ones(1)))[row[free]]
+        return S
 
     @cached_property
     def _far(self) -> np.ndarray:
@@ -253,16 +275,6 @@ class Meridian:
         whole = np.outer(self._far, _resultant(m, loads)) if m < 2 else np.zeros((n, loads.shape[-1]))
         whole[self.factor.free] = u
         return self.skeleton.extended(whole)
-
-    def deflection(self, u: np.ndarray, loaded: np.ndarray) -> np.ndarray:
-        """u_z at the nodes, of which the free unknowns are u."""
-        row = self.factor.rows(self.skeleton.matrix.shape[0] - self.discretisation.N + loaded)
-        return np.where(row[:, None] < 0, 0.0, u[row])
-
-
-def _normal(columns: np.ndarray) -> np.ndarray:
-    """Loads (3, nodes, columns) of which the normal ones are ``columns``, the others zero."""
-    return np.stack([columns, 0 * columns, 0 * columns])
 
 
 def _resultant(m: float, loads: np.ndarray) -> np.ndarray:

@@ -78,10 +78,7 @@ class OffAxisFields:
         surface: float,
     ) -> "OffAxisFields":
         d, materials = compliance.discretisation, compliance.solid.materials
-        found = compliance.displacements(loads)
-        if friction:
-            for m, u in compliance.sliding(loads, friction).items():
-                found[m] = found[m] + u if m in found else u
+        found = compliance.displacements(loads, friction)
         fields = tuple(HarmonicField(d, u, materials, m, np.zeros_like, 0.0, False) for m, u in found.items())
         return cls(compliance, fields, loads, friction, pressure, surface)
 

@@ -81,13 +81,24 @@ class StarPressure:
 
     def polynomials(self, s: np.ndarray, tau: np.ndarray, degree: int) -> np.ndarray:
         """s^n T_j(2 s^2 - 1) cos(n tau) of the terms, (terms,) + points."""
-        T = np.polynomial.chebyshev.chebvander(2 * s**2 - 1, degree // 2)
-        waves = {n: s**n * np.cos(n * tau) for n in range(0, degree + 1, self.fold)}
-        return np.array([waves[n] * T[..., j] for n, j in self.terms(degree)])
+        x, turn = 2 * s**2 - 1, (s * np.exp(1j * tau)) ** self.fold
+        T = [np.ones_like(x), x]
+        for _ in range(2, degree // 2 + 1):
+            T.append(2 * x * T[-1] - T[-2])
+        found, wave = np.empty((len(self.terms(degree)), *x.shape)), np.ones_like(turn)
+        for k, (_, j) in enumerate(self.terms(degree)):
+            if k and j == 0:
+                wave = wave * turn
+            np.multiply(wave.real, T[j], out=found[k])
+        return found
+
+    def _wave(self, at: np.ndarray) -> np.ndarray:
+        """sum_n c_n Re at^n."""
+        return np.asarray(np.polynomial.polynomial.polyval(at**self.fold, self.contour).real)
 
     def edge_at(self, tau: np.ndarray) -> np.ndarray:
         """R(tau), in the stretched plane."""
-        return 1 + np.tensordot(self.contour, [np.cos(n * tau) for n in self.waves], 1)
+        return 1 + self._wave(np.exp(1j * tau))
 
     def polar(self, x: Any, y: Any) -> tuple[np.ndarray, np.ndarray]:
         """w, tau of points; w = 1 is the edge."""
@@ -103,8 +114,8 @@ class StarPressure:
 
     def smooth(self, w: np.ndarray, tau: np.ndarray) -> np.ndarray:
         """The coordinate s of w, tau."""
-        moved = np.tensordot(self.contour, [w**n * np.cos(n * tau) for n in self.waves], 1)
-        return np.asarray(w * self.edge_at(tau) / (1 + moved))
+        turn = np.exp(1j * tau)
+        return np.asarray(w * (1 + self._wave(turn)) / (1 + self._wave(w * turn)))
 
     def __call__(self, x: Any, y: Any) -> np.ndarray:
         """p; x and y broadcast."""

@@ -230,23 +230,26 @@ def influence_table(
 ) -> Array:
     """Influence at the offsets m x n, computed for n >= 0 and mirrored; (components, len(m), len(n)).
 
-    reach : 0 for offsets beyond it.
+    m, n : each one more than the one before.   reach : 0 for offsets beyond it.
     """
     mine = np.flatnonzero(np.abs(m) <= reach)
-    distinct, where = np.unique(np.minimum(np.abs(n), reach + 1).astype(int), return_inverse=True)
-    distinct = distinct[distinct <= reach]
+    sides = [np.flatnonzero((n >= 0) & (n <= reach)), np.flatnonzero((n < 0) & (n >= -reach))]
+    distinct = np.unique(np.abs(n[np.concatenate(sides)]))
     if not mine.size or not distinct.size:
         return np.zeros((len(influence(m[:1], n[:1])), m.size, n.size))
-    mm, nn = np.meshgrid(m[mine], distinct, indexing="ij")
+    table = np.zeros((0, m.size, n.size))
     rows = max(1, 16 * numbers.CACHE // distinct.size)
-    blocks = [
-        influence(a.ravel(), b.ravel()).reshape(-1, *a.shape)
-        for a, b in ((mm[i : i + rows], nn[i : i + rows]) for i in range(0, mine.size, rows))
-    ]
-    found = np.concatenate(blocks, axis=1)
-    table = np.zeros((len(found), m.size, n.size))
-    inside = where < distinct.size
-    table[:, mine[0] : mine[-1] + 1, inside] = found[:, :, where[inside]]
+    for some in (mine[i : i + rows] for i in range(0, mine.size, rows)):
+        mm, nn = np.meshgrid(m[some], distinct, indexing="ij")
+        block = influence(mm.ravel(), nn.ravel()).reshape(-1, *mm.shape)
+        if not len(table):
+            table = np.zeros((len(block), m.size, n.size))
+        for side in (one for one in sides if one.size):
+            first, last = np.abs(n[side[[0, -1]]]) - distinct[0]
+            part = (
+                block[:, :, first : last + 1] if first <= last else block[:, :, last : first + 1][..., ::-1]
+            )
+            table[:, some[0] : some[-1] + 1, side[0] : side[-1] + 1] = part
     for component in odd_in_y:
         table[component] *= np.where(n < 0, -1.0, 1.0)
     return table
