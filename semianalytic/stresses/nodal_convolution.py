@@ -181,7 +181,7 @@ def _at_sites(
     m = np.arange(low[0] - (force.shape[0] - 1), high[0] + 1)
     if columns.size <= numbers.COLUMNS:
         m = m[np.abs(m) <= reach] if np.abs(m).min() <= reach else m[:1]
-        n = np.arange(1 + min(np.abs(columns[:, None] - [0, force.shape[1] - 1]).max(), reach))
+        n = np.arange(1 + int(min(np.abs(columns[:, None] - [0, force.shape[1] - 1]).max(), reach)))
         table = influence_table(influence, m, n, ())
         return _along_columns(table, sites[0] - m[0], force, columns, column, odd_in_y)
     n = np.arange(low[1] - (force.shape[1] - 1), high[1] + 1)
