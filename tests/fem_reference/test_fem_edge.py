@@ -62,6 +62,7 @@ def test_the_estimate_covers_the_error_in_the_strip_around_the_edge(friction):
     assert s.sample(Points(-a, 0.0, 0.0), "stress").uncertainty[0, 0] < 2e-2 * P_H
 
 
+@pytest.mark.slow
 def test_hard_ultra_thin_film_converges():
     given = {"radius": 8e-3, "load": 28.060850301711923, "substrate": (207e9, 0.455)}
     given["coatings"] = ((6236910000000.0, 0.4309, 4.411584e-7),)

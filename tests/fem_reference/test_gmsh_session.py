@@ -66,6 +66,7 @@ def test_gmsh_is_shut_down_and_signals_are_untouched():
     assert signal.getsignal(signal.SIGINT) is before
 
 
+@pytest.mark.slow
 def test_threads_and_processes_get_the_same_answers():
     # Another number of threads sums in another order.
     environment = os.environ | {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}

@@ -73,6 +73,7 @@ def test_an_error_of_the_matrix_moves_the_contact(monkeypatch):
         assert abs(value - closed) <= U < abs(wrong.sample(None, name).value - closed), name
 
 
+@pytest.mark.slow
 def test_an_error_of_the_patches_is_none_of_the_elements(monkeypatch):
     """A modulus of the patches 1.5e-3 too large is a consistent error of 1e-3 p0: both methods disagree."""
     right = semianalytic.solve
@@ -88,6 +89,7 @@ def test_an_error_of_the_patches_is_none_of_the_elements(monkeypatch):
     assert abs(p - q) > U + V
 
 
+@pytest.mark.slow
 def test_two_elastic_bodies_meet_as_one_of_both_compliances():
     ball = (310e9, 0.25)
     exact = pressed_ellipsoid(*RADII, LOAD, *STEEL, ball)
@@ -101,7 +103,9 @@ def test_two_elastic_bodies_meet_as_one_of_both_compliances():
     np.testing.assert_allclose(on_ball, mirror * on_flat, atol=1e-4 * exact.peak_pressure)
 
 
-@pytest.mark.parametrize("radii", [RADII, RADII[::-1]], ids=["long axis", "short axis"])
+@pytest.mark.parametrize(
+    "radii", [RADII, pytest.param(RADII[::-1], marks=pytest.mark.slow)], ids=["long axis", "short axis"]
+)
 def test_the_stress_at_the_end_of_an_axis_is_johnsons(radii):
     """K. L. Johnson, Contact Mechanics, 1985, section 4.2: sigma_x = -sigma_y there."""
     exact, (_, nu) = pressed_ellipsoid(*radii, LOAD, *STEEL), STEEL

@@ -126,6 +126,7 @@ def test_what_a_worker_did_elsewhere_is_done_here_and_said(trouble, tmp_path, mo
     assert ("versions" if trouble == "other versions" else "good-0.json") in said
 
 
+@pytest.mark.slow
 def test_a_scheduler_that_does_not_answer_is_one_sentence_with_what_to_do():
     for address in ("127.0.0.1:9", "nowhere"):
         with (

@@ -60,6 +60,7 @@ def damaged(whole: bytes, rng: random.Random, number: int) -> bytes:
     return bytes(flipped)
 
 
+@pytest.mark.slow
 def test_two_hundred_damaged_files_are_named_and_computed_again(tmp_path, stored, capsys):
     origin, cases = stored
     folder = tmp_path / "run"
@@ -163,6 +164,7 @@ def test_nothing_is_written_through_a_link(tmp_path):
     assert content(outside) == {"precious": b"precious"}
 
 
+@pytest.mark.slow
 def test_limit_on_file_size_is_one_sentence_and_the_earlier_results_stay(tmp_path):
     # What a full disk does, on any machine: no file may grow beyond 60 kB, which a result exceeds.
     (tmp_path / "quick.toml").write_text(QUICK)

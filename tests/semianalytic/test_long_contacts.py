@@ -35,7 +35,8 @@ def test_a_long_ellipse_is_hertz(ratio, along):
 
 
 @pytest.mark.parametrize(
-    ("edge", "wider", "patches"), [(0.2, 1.0043, 513), (1.8, 1.0005, 129), (2.0, 1.04, 129)]
+    ("edge", "wider", "patches"),
+    [pytest.param(0.2, 1.0043, 513, marks=pytest.mark.slow), (1.8, 1.0005, 129), (2.0, 1.04, 129)],
 )
 def test_a_flat_punch_with_a_round_edge_is_sneddon(edge, wider, patches):
     """f = (r - b)^2/2R beyond b. I. N. Sneddon, Int. J. Engng Sci. 3 (1965) 47-57."""

@@ -74,6 +74,7 @@ def test_the_displacement_of_patches_alone_is_within_its_uncertainty_beside_the_
     assert (np.abs(u - exact.displacement(x, 0.1 * A_H, 0 * x)) <= U).all()
 
 
+@pytest.mark.slow
 def test_a_pressure_whose_change_does_not_fall_is_refined():
     # a stiff film: the pressure beside the edge changes by 2.6e-5 from grid to grid, and is 1.6e-4 off
     film = ((70e9, 0.22, 2.69693e-6),)
@@ -252,7 +253,9 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(one, marks=[pytest.mark.slow] * (one == "thin and stiff")) for one in CASES]
+)
 def test_errors_against_the_integral_equation_are_within_the_uncertainty(name):
     given = {"radius": R, "load": W, "substrate": STEEL, "friction": 0.25} | CASES[name]
     exact = integral_equation.solve(**given, estimate_uncertainty=False)
@@ -343,7 +346,10 @@ def assert_same_bits(first, second):
     "solved",
     [
         small,
-        lambda: indent(ellipsoid, 2 * A_H, friction=0.25, estimate_uncertainty=True),
+        pytest.param(
+            lambda: indent(ellipsoid, 2 * A_H, friction=0.25, estimate_uncertainty=True),
+            marks=pytest.mark.slow,
+        ),
         lambda: prescribed(1e9, friction=0.25),
         lambda: prescribed(np.cos, estimate_uncertainty=False),
     ],

@@ -326,6 +326,7 @@ def test_asperities_far_apart_carry_half_the_load_each_beside_a_point_force():
     np.testing.assert_allclose(mirrored, stress, atol=1e-9 * one.peak_pressure)
 
 
+@pytest.mark.slow
 def test_two_contacts_side_by_side_settle_as_fast_as_one():
     """Interacting through a coating: p0 within 2e-6 and a within 1e-5 on grids of 257 and 401 patches."""
     coarse, fine = (
@@ -345,6 +346,7 @@ def test_two_contacts_side_by_side_settle_as_fast_as_one():
         assert abs(one - other) <= getattr(coarse.uncertainty, name) + getattr(fine.uncertainty, name), name
 
 
+@pytest.mark.slow
 def test_the_stress_at_the_edge_of_an_ellipse_is_within_a_small_uncertainty():
     coated = {"coatings": ((420e9, 0.25, 16e-6),), "substrate": (210e9, 0.3), "accuracy": None}
     pressed = {"radius": 9e-3, "load": 20.0, "indenter": ("ellipsoid", (20e-3, 4e-3))}

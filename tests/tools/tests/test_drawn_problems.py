@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import pytest
 from drawn_problems import draw, draw_ellipse
 from synthetic_results import STEEL
 
@@ -47,6 +48,7 @@ def test_ellipses_are_drawn_either_way_on_one_coating_and_compared_by_two_method
     assert {claim.between for case in cases for claim in case.claims} == {("semianalytic", "fem_reference")}
 
 
+@pytest.mark.slow
 def test_draws_are_valid_cases_with_every_claim_and_fill_their_ranges():
     cases = [drawn(7, number) for number in range(300)]
     assert all(case.claims == standard_claims(case.problem) for case in cases)

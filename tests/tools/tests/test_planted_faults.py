@@ -65,6 +65,7 @@ class OtherVariables(ast.NodeTransformer):
         return ast.parse(ast.unparse(self.visit(deepcopy(function)))).body[0]
 
 
+@pytest.mark.slow
 def test_faults_stay_where_they_are_when_the_source_is_reformatted_and_most_when_all_variables_are_renamed():
     followed = 0
     for change in (change for fault in ALL for change in fault.changes if change.replace):
@@ -154,6 +155,7 @@ def test_nothing_planted_is_noticed_by_no_comparison(clean):
     assert row.change == 0
 
 
+@pytest.mark.slow
 def test_a_check_that_fails_without_the_fault_is_no_evidence(clean, tmp_path):
     path = clean_path(clean, "01_uncoated_steel")
     result = result_from_json(read_checked(path))
@@ -198,6 +200,7 @@ def test_a_record_passes_only_where_enough_is_caught_and_nothing_is_left_unsaid(
     assert not lost.passed
 
 
+@pytest.mark.slow
 def test_the_command_tries_resumes_and_writes_the_matrix(tmp_path):
     words = [sys.executable, TOOLS, "faults", "sides_swapped", "--output", tmp_path, "--jobs", "1"]
     done = subprocess.run(words, capture_output=True, text=True)

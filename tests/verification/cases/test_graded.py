@@ -72,6 +72,7 @@ def test_bad_graded_coating_is_one_message_with_its_key(old, new, message):
     assert message in str(error.value)
 
 
+@pytest.mark.slow
 def test_slicing_is_within_its_uncertainty_and_moduli_are_shown_as_typed():
     words = 'course = "linear", top = "130 GPa", base = "300 GPa"'
     text = case_text(f"layers = 12; E = {{ {words} }}; nu = 0.25; thickness_over_a_h = 0.6")
@@ -87,6 +88,7 @@ def test_slicing_is_within_its_uncertainty_and_moduli_are_shown_as_typed():
     assert "E = 130 to 300 GPa, linear, as 12 sub-layers" in "".join(described(cases[0]))
 
 
+@pytest.mark.slow
 def test_a_study_beside_a_graded_coating_solves_half_of_its_sub_layers_too():
     graded = '{ layers = 4, E = { course = "linear", top = 1e11, base = 3e11 }, nu = 0.3, thickness = 1e-5 }'
     text = 'title = "t"\n[problem]\nradius = 1e-2\nload = 20.0\nsubstrate = { E = 2e11, nu = 0.3 }\n'

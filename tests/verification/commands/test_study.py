@@ -39,6 +39,7 @@ def test_bad_input_is_one_sentence_and_nothing_is_written(plan, options, said, t
     assert written(tmp_path) == []
 
 
+@pytest.mark.slow
 def test_a_study_of_one_point_from_the_command_line(tmp_path, capfd):
     plan = tmp_path / "one.toml"
     text = STUDY.replace("[0.5, 2.0]", "[2.0]").replace("[2e-5, 4e-5, 8e-5]", "[4e-5]")

@@ -135,8 +135,10 @@ def test_what_is_piped_has_no_colours(tmp_path, environment):
     ("words", "written"),
     [
         (("solve", "quick.toml", "--plot", "stresses.png"), "stresses.png"),
-        (("run", "quick.toml", "--output", "out"), "out/report.html"),
-        (("run", "quick.toml", "--output", "out", "--json"), "out/report.html"),
+        pytest.param(("run", "quick.toml", "--output", "out"), "out/report.html", marks=pytest.mark.slow),
+        pytest.param(
+            ("run", "quick.toml", "--output", "out", "--json"), "out/report.html", marks=pytest.mark.slow
+        ),
     ],
 )
 def test_a_reader_that_has_seen_enough_changes_no_file_and_no_exit_code(tmp_path, words, written):

@@ -96,6 +96,7 @@ def one_case(tmp_path, monkeypatch):
     return {"quiet": True, "baseline": tmp_path / "none", "records": tmp_path / "none"}
 
 
+@pytest.mark.slow
 def test_study_that_fails_is_a_sentence_of_the_report_and_no_verdict(one_case, tmp_path, monkeypatch):
     whole = accuracy_study.task
 

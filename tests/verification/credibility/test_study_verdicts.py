@@ -66,9 +66,11 @@ def test_every_part_meets_its_limit(clean):
     ("fault", "part"),
     [
         ("few_polynomials", "compliant film: split conversion, corrected edge: a, N = 129"),
-        ("step_outside_contact", "coated: patches alone: iterations"),
-        ("grid_too_small", "coated: patches alone: iterations"),
-        ("levels_alike", "coated: grids of the uncertainty: ratio of patches"),
+        pytest.param("step_outside_contact", "coated: patches alone: iterations", marks=pytest.mark.slow),
+        pytest.param("grid_too_small", "coated: patches alone: iterations", marks=pytest.mark.slow),
+        pytest.param(
+            "levels_alike", "coated: grids of the uncertainty: ratio of patches", marks=pytest.mark.slow
+        ),
     ],
 )
 def test_the_edge_of_a_film_the_iterations_and_the_grids_are_judged(fault, part):

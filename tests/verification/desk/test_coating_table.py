@@ -129,6 +129,7 @@ def test_of_many_layers_the_worst_of_each_material_and_interface_stands(tmp_path
     assert worst_of_each(few, found[:6]) == tuple(found[:6])
 
 
+@pytest.mark.slow
 def test_the_answer_in_python_is_that_of_the_command(tmp_path):
     words = {"ball": "6 mm", "load": "20 N", "substrate": "100Cr6, yield 1 GPa", "friction": 0.2}
     found = verification.answer(**words, coatings=["<i> 2 um, 450 GPa, 0.25"])

@@ -35,6 +35,7 @@ def stress(found, quantity, body="flat"):
     return at
 
 
+@pytest.mark.slow
 def test_a_ball_in_its_race_has_hertzs_half_axes_and_johnsons_tension():
     """Ball of 9.525 mm of a 6206 on its inner ring: pitch circle 46 mm, groove of 52 % of the ball.
 
@@ -87,6 +88,7 @@ def test_the_gap_alone_counts():
     assert case_of("flat, 3 mm", "6 mm, flat").problem == one
 
 
+@pytest.mark.slow
 def test_exchanging_the_axes_exchanges_the_stresses():
     fast = {"patches": 65, "accuracy": None, "estimate_uncertainty": False}
     given = {"coatings": ["20 um, 420 GPa, 0.25"], "ball": None, "numerics": fast}

@@ -29,7 +29,9 @@ def exact(kind, loads=LOADS):
     return IndentationCurve({"load": loads} | values, {}, (), 0)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "kind", [pytest.param(one, marks=[pytest.mark.slow] * (one == "stiffness")) for one in KINDS]
+)
 def test_the_modulus_of_an_exact_curve_is_found(kind):
     curve = exact(kind)
     of, over = KINDS[kind]
@@ -42,6 +44,7 @@ def test_the_modulus_of_an_exact_curve_is_found(kind):
     assert fit.inputs["thickness of the film"] == pytest.approx(moved, rel=0.1, abs=1e-5)
 
 
+@pytest.mark.slow
 def test_the_other_film_is_found_and_the_zero_of_the_depth():
     curve = exact("depth")
     shifted = replace(curve, values=curve.values | {"depth": curve.values["depth"] + 3e-9})

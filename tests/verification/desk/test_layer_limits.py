@@ -40,6 +40,7 @@ def test_load_at_which_a_bare_body_yields_is_johnsons(strength):
     assert bool(found.warnings("steel")) == (found.utilisation > 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("residual", [0.5e9, -0.5e9])
 def test_at_the_load_found_another_source_has_the_strength(residual):
     """Of every mode; modes without a strength are none."""
@@ -69,6 +70,7 @@ def test_residual_stress_beyond_the_strength_needs_no_load():
     assert "residual stress alone" in coating.warnings("film")[0]
 
 
+@pytest.mark.slow
 def test_the_verdict_names_what_fails_first_with_its_margin():
     """The first failure is the mode of the lowest load; the highest utilisation is nearest to its limit."""
     film = 'name = "TiN"; E = "450 GPa"; nu = 0.25; thickness = "3 um"; yield_strength = "9 GPa"'
@@ -115,6 +117,7 @@ def test_a_soft_film_is_strained_though_its_substrate_is_not():
     assert line.startswith("coating 1 is strained by")
 
 
+@pytest.mark.slow
 def test_solve_judges_each_layer_by_its_own_stress(tmp_path):
     """A film under 1.6 times its yield strength may be elastic; --strict refuses one that is not."""
     coating = 'name = "Ag"; E = "83 GPa"; nu = 0.37; thickness = "10 um"; yield_strength = "{} MPa"'

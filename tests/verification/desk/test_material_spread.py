@@ -49,6 +49,7 @@ def test_ranges_come_from_names_with_typical_values_and_one_material_moves_toget
     ]
 
 
+@pytest.mark.slow
 def test_changes_of_several_materials_add_up_and_a_mismatch_follows_its_modulus():
     coatings = ("DLC 2 um, expansion 3e-6", "ta-C 1 um, expansion 3e-6")
     text = case_text("6 mm", "20 N", "100Cr6, expansion 11e-6", coatings, temperature_change=-300.0)
@@ -68,7 +69,12 @@ def test_changes_of_several_materials_add_up_and_a_mismatch_follows_its_modulus(
 
 
 @pytest.mark.parametrize(
-    ("strength", "said"), [("2 GPa", "holds"), ("1 MPa", "fails"), ("middle", "depends")]
+    ("strength", "said"),
+    [
+        pytest.param("2 GPa", "holds", marks=pytest.mark.slow),
+        pytest.param("1 MPa", "fails", marks=pytest.mark.slow),
+        ("middle", "depends"),
+    ],
 )
 def test_a_verdict_over_the_ranges_is_said(strength, said):
     case = case_of("DLC 2 um")
@@ -81,6 +87,7 @@ def test_a_verdict_over_the_ranges_is_said(strength, said):
     assert f"The verdict {said}" in found.sentence(judged, modes)
 
 
+@pytest.mark.slow
 def test_the_command_shows_the_range_and_writes_every_number(tmp_path):
     options = [part for pair in OPTIONS.items() for part in pair]
     done = coatcheck("solve", *options, "--spread", "--csv", "out.csv", "--json", cwd=tmp_path)

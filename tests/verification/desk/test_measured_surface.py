@@ -78,6 +78,7 @@ def test_a_flat_map_on_a_ball_is_that_ball_and_roughness_makes_less_contact():
     assert sum(rough.solution.patch_pressure.ravel()) * (L / 97) ** 2 == pytest.approx(LOAD, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_a_residual_stress_adds_to_the_tension_at_the_surface():
     words = "3 um, 300 GPa, 0.25"
     without, with_it = (

@@ -92,6 +92,7 @@ def test_principal_and_von_mises_stress_are_those_of_the_summed_tensor(stress):
         assert -largest.uncertainty <= excess <= 5e-3 * (abs(stress) + SLIDING.p_h)
 
 
+@pytest.mark.slow
 def test_of_a_coated_ball_it_belongs_to_the_ball():
     problem = replace(SLIDING, coatings=(), ball=(210e9, 0.3, ((180e9, 0.2, 10e-6),)))
     plain = answer(problem, "semianalytic")

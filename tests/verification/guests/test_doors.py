@@ -154,6 +154,7 @@ def test_an_ellipsoid_is_asked_of_a_guest_that_supports_it_and_judged_by_the_clo
         assert slips == (["nu = 0 in place of Poisson's ratio"] if name == "wrong" else [])
 
 
+@pytest.mark.slow
 def test_the_semi_analytical_method_gets_the_verdicts_it_has_inside(tmp_path):
     function = check_own("semianalytic", "01_uncoated_steel", tmp_path)
     assert set(outcomes(function).values()) <= {Outcome.AGREES, Outcome.INCONCLUSIVE}
@@ -202,6 +203,7 @@ def solve(pressure=None, load_radius=None, substrate=None, **sphere):
 """
 
 
+@pytest.mark.slow
 def test_a_function_of_another_environment_is_asked_under_a_disc(tmp_path):
     supports = 'supports = { loads = ["disc"] }'
     text = f'name = "d"\ncallable = "adapter:solve"\nclaim = 0.01\n{supports}\n'

@@ -47,7 +47,7 @@ def wait(chromium: Page, milliseconds: int) -> None:
     chromium.evaluate(f"new Promise((done) => setTimeout(done, {milliseconds}))")
 
 
-@pytest.mark.parametrize("dark", [False, True], ids=["light", "dark"])
+@pytest.mark.parametrize("dark", [False, pytest.param(True, marks=pytest.mark.slow)], ids=["light", "dark"])
 def test_every_page_fits_and_is_silent(chromium: Page, report, dark):
     chromium.open(report, width=390, dark=dark)
     for where in chromium.evaluate("[...document.querySelectorAll('.page')].map((page) => page.id)"):

@@ -84,7 +84,7 @@ def beside(case):
     ("coating", "friction", "solve", "files"),
     [
         ((420e9, 0.3), 0.0, solved, ("fem", "fem-far")),
-        ((420e9, 0.25), 0.3, solved, ("fem", "fem-far")),
+        pytest.param((420e9, 0.25), 0.3, solved, ("fem", "fem-far"), marks=pytest.mark.slow),
         ((210e9, 0.3), 0.2, beside, ("fem",)),
     ],
     ids=["coated", "sliding", "not round"],

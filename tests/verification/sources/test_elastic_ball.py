@@ -62,7 +62,9 @@ def test_uncoated_bodies_are_those_of_hertz_and_hamilton(source):
     assert Hertz(10e-3, 20.0, *STEEL, ball=(370e9, 0.22)).peak_pressure == pytest.approx(SLIDING.p_h)
 
 
-@pytest.mark.parametrize("source", SOURCES)
+@pytest.mark.parametrize(
+    "source", [pytest.param(one, marks=[pytest.mark.slow] * (one is fem_reference)) for one in SOURCES]
+)
 def test_the_ball_seen_as_the_flat_has_its_stresses(source):
     problem = replace(BOTH_COATED, friction=0.2)
     one, other = solved(source, problem), solved(source, problem.seen_from(BALL))

@@ -61,6 +61,7 @@ def test_a_sliding_ellipse_has_the_stresses_of_solve():
         assert row[name] == pytest.approx(value, abs=1e-4 * row["peak_pressure"]), name
 
 
+@pytest.mark.slow
 def test_exchanging_the_axes_changes_nothing_without_friction():
     one, other = (rows_of(ellipse(radii, [0.0]))[0] for radii in ((8e-3, 4e-3), (4e-3, 8e-3)))
     for name in QUANTITIES:
