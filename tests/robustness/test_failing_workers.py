@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+import weakref
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -152,3 +153,29 @@ def test_workers_of_a_killed_run_end_with_it(tmp_path):
     parent.send_signal(signal.SIGKILL)
     parent.wait()
     gone(pids, within=5)
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_ctrl_c_in_the_clean_up_of_an_import_stops_the_run_too(tmp_path):
+    """Python drops an exception that a callback of a weak reference raises, as of the lock of an import."""
+
+    class Lock:
+        pass
+
+    def clean_up(_):
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.01)
+
+    def meanwhile():
+        lock = Lock()
+        kept = weakref.ref(lock, clean_up)
+        del lock
+        assert kept() is None
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored below nohup and the like
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            run_tasks([task("hang", tmp_path)], jobs=1, time_limit=3, meanwhile=meanwhile)
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)

@@ -1,10 +1,13 @@
 """A pool of processes: tasks side by side, each with a time limit."""
 
 import select
+import signal
 import sys
+import threading
 from collections import deque
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from concurrent.futures import Executor
+from contextlib import contextmanager
 from typing import TypeVar
 
 from verification.running.pool.executor_tasks import solved_by
@@ -48,20 +51,43 @@ def run_tasks(
     threads = max(1, cores() // jobs)
     slots = [Slot[T](threads) for _ in range(min(jobs, len(waiting)))]
     try:
-        _start_idle(slots, waiting, started)
-        meanwhile()
-        while len(results) < len(tasks):
-            # Until one answers; each time limit is looked at every 0.05 s.
-            select.select([end for slot in slots if (end := slot.replies) is not None], [], [], 0.05)
-            for slot in slots:
-                if (found := slot.poll(time_limit)) is not None:
-                    ended(*found)
+        with _interrupts() as seen:
             _start_idle(slots, waiting, started)
+            meanwhile()
+            while len(results) < len(tasks):
+                # Until one answers; each time limit is looked at every 0.05 s.
+                select.select([end for slot in slots if (end := slot.replies) is not None], [], [], 0.05)
+                if seen:
+                    raise KeyboardInterrupt
+                for slot in slots:
+                    if (found := slot.poll(time_limit)) is not None:
+                        ended(*found)
+                _start_idle(slots, waiting, started)
     finally:  # no process outlives the run, however it ends
         for slot in slots:
             slot.stop()
             slot.errors.close()
     return [results[number] for number in range(len(tasks))]
+
+
+@contextmanager
+def _interrupts() -> Iterator[list[int]]:
+    """Each Ctrl-C: Python drops the KeyboardInterrupt of one that falls into the clean-up of an import."""
+    seen: list[int] = []
+    before = signal.getsignal(signal.SIGINT)
+    if before is not signal.default_int_handler or threading.current_thread() is not threading.main_thread():
+        yield seen
+        return
+
+    def noticed(number: int, frame: object) -> None:
+        seen.append(number)
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, noticed)
+    try:
+        yield seen
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _in_order(tasks: Sequence[Task[T]]) -> deque[Group[T]]:
