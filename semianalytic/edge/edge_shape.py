@@ -295,12 +295,11 @@ def _lobed(
 class Step:
     """A change of the coefficients, ((M + 1) k,), and the same in the energy norm, where it is of order one.
 
-    energy : products of the columns in that norm.   share : of the change that was taken.
+    share : of it that was taken.
     """
 
     change: Array
     scaled: Array
-    energy: Array
     share: float = numbers.DAMPING
 
 
@@ -319,8 +318,7 @@ def fitted(
     """The shape nearer to the patches' pressure in the energy norm, and the step to it.
 
     The step is relaxed: rounds of fit and contact would oscillate. Its share is Aitken's, from the step
-    before (Irons and Tuck, Int. J. Numer. Meth. Engng 1 (1969) 275-277). The products of the columns are
-    kept after a step far shorter than a patch: they only set how fast the rounds converge.
+    before (Irons and Tuck, Int. J. Numer. Meth. Engng 1 (1969) 275-277).
 
     pressure [Pa] : of the patches at centres x, y [m], (nx, ny).  deflection : K p.  weight : patches that
     each one represents.  patch [m] : the side.  fixed_edge : change the coefficients b alone.
@@ -336,22 +334,17 @@ def fitted(
             1,
         )
         columns, left = columns * window, left * window
-    flat, unlike = columns.reshape(len(columns), -1), 1.0 if weight is None else weight
-    if (
-        before is not None
-        and len(before.energy) == len(columns)
-        and np.abs(before.change[-k:]).sum() * across < numbers.MISFIT * patch
-    ):
-        energy, right = before.energy, flat @ (deflection(left) * unlike).ravel()
-    else:
-        deflected = np.stack([(deflection(column) * unlike).ravel() for column in columns])
-        energy, right = deflected @ flat.T, deflected @ left.ravel()
-        energy = (energy + energy.T) / 2
-    size = np.sqrt(np.diag(energy))
-    scaled = np.linalg.lstsq(energy / np.outer(size, size), right / size, rcond=1e-14)[0]
+    loaded = (left != 0) | (columns[0] != 0)  # where either pressure acts
+    deflected = np.stack([deflection(column)[loaded] for column in columns])
+    if weight is not None:
+        deflected *= weight[loaded]
+    normal, right = deflected @ columns[:, loaded].T, deflected @ left[loaded]
+    size = np.sqrt(np.diag(normal))
+    normal = (normal + normal.T) / 2 / np.outer(size, size)
+    scaled = np.linalg.lstsq(normal, right / size, rcond=1e-14)[0]
     change = scaled / size
     if fixed_edge:
-        return shape.changed(np.concatenate([change, np.zeros(k)])), Step(change, scaled, energy)
+        return shape.changed(np.concatenate([change, np.zeros(k)])), Step(change, scaled)
     share = numbers.DAMPING
     if before is not None and before.scaled.size == scaled.size:
         difference = scaled - before.scaled
@@ -362,7 +355,7 @@ def fitted(
     taken = share * change
     taken[-k:] *= min(1.0, patch / moved) if moved else 1.0
     shape = _between_centres(shape.changed(taken), pressure > 0, x, y, patch)
-    return shape, Step(change, scaled, energy, share)
+    return shape, Step(change, scaled, share)
 
 
 def _between_centres(shape: Shape, loaded: NDArray[np.bool_], x: Array, y: Array, patch: float) -> Shape:
