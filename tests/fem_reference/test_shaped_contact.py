@@ -46,7 +46,11 @@ SHAPES = {
 }
 
 
-@pytest.mark.parametrize("indenter", SHAPES.values(), ids=SHAPES)
+@pytest.mark.parametrize(
+    "indenter",
+    [pytest.param(one, marks=[pytest.mark.slow] * (name == "asperities")) for name, one in SHAPES.items()],
+    ids=SHAPES,
+)
 def test_the_start_is_forgotten(indenter):
     """From a first contact 10 % too wide and from one 10 % too narrow, on a coating, within U."""
     given = {"indenter": indenter, "coatings": ((420e9, 0.25, 40e-6),)}
@@ -119,6 +123,7 @@ def test_the_stress_at_the_end_of_an_axis_is_johnsons(radii):
     assert stress[1, 1] == pytest.approx(-radial / exact.peak_pressure, abs=3e-4)
 
 
+@pytest.mark.slow
 def test_beside_its_own_edge_the_pressure_is_as_uncertain_as_it_is_wrong():
     found = solved(surface=0.06, estimate_uncertainty=True)
     share, exact = np.array([0.97, 0.997, 0.9997]), EXACT.axes[0]

@@ -51,6 +51,17 @@ def test_many_depths_are_interpolated_to_what_each_gives_alone():
     np.testing.assert_allclose(together[:, :5], np.stack(alone, axis=-1), rtol=0, atol=2e-6)
 
 
+def test_deep_below_many_patches_the_forces_of_coarser_lattices_are_gathered():
+    """Below more patches than are summed one by one: on and off the axis as from the rings."""
+    n, body = 1025, BODIES["two coatings"]
+    x = (np.arange(n) - n // 2) * 2.24 / n
+    at = np.array([0.0, 0.3, 0.8]), np.array([0.0, 0.1, -0.4]), np.array([0.12, 0.2, 0.4])
+    layer = body.layer_of(at[2], None)
+    exact = subsurface.stress(*at, layer, pressures=[Disc(1.0, HERTZ.of_square)], body=body)[0]
+    found = patch_field.stress(*at, layer, grid_x=x, pressure=patch_mean(HERTZ, x, 2.24 / n), body=body)
+    np.testing.assert_allclose(found, exact, rtol=0, atol=2e-6)
+
+
 def test_a_single_patch_deep_down_is_a_point_force():
     pressure, z = np.zeros((N, N)), 20 * D
     pressure[N // 2, N // 2] = 1 / D**2

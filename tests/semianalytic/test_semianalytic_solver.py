@@ -253,6 +253,15 @@ CASES = {
 }
 
 
+def test_a_contact_that_reaches_the_rim_of_the_first_grid_is_found_on_a_wider_one():
+    """On a film of 1000 times its substrate's modulus, which bends: Hertz on the film alone is far smaller."""
+    given = {"radius": R, "load": W, "substrate": STEEL, "coatings": ((1000 * E, NU, 0.1 * A_H),)}
+    exact = integral_equation.solve(**given, estimate_uncertainty=False)
+    s = semianalytic.solve(**given, patches=65, estimate_uncertainty=False)
+    assert exact.contact_radius > 3 * A_H / 10
+    assert s.contact_radius == pytest.approx(exact.contact_radius, rel=1e-3)
+
+
 @pytest.mark.parametrize(
     "name", [pytest.param(one, marks=[pytest.mark.slow] * (one == "thin and stiff")) for one in CASES]
 )

@@ -180,6 +180,7 @@ def lobes(x, y):
     return (x**2 + y**2) / 0.02 + 5e4 * (x**3 - 3 * x * y**2)
 
 
+@pytest.mark.slow
 def test_a_shape_that_the_coarsest_grid_does_not_resolve_is_found_on_the_next_one():
     # a stiff film of a seventh of the short half-axis, which is 17 patches on the coarsest grid
     given = {

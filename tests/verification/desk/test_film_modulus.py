@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -21,9 +22,14 @@ PROBLEM = CoatedContact(
 LOADS = np.linspace(0.05e-3, 3e-3, 40)
 
 
+@cache
+def solved_at(load):
+    return solve_exactly(replace(PROBLEM, load=load))
+
+
 def exact(kind, loads=LOADS):
     """The curve by a solve at each load, which shares no interpolation with the fit."""
-    found = [solve_exactly(replace(PROBLEM, load=float(load))) for load in loads]
+    found = [solved_at(float(load)) for load in loads]
     names = {"load": None, "depth": "approach", "stiffness": "stiffness", "radius": "contact_radius"}
     values = {n: np.array([getattr(one, of) for one in found]) for n, of in names.items() if of}
     return IndentationCurve({"load": loads} | values, {}, (), 0)
@@ -55,6 +61,7 @@ def test_the_other_film_is_found_and_the_zero_of_the_depth():
     assert pytest.approx(279e9, rel=5e-3) == buried.E
 
 
+@pytest.mark.slow
 def test_given_standard_deviations_are_the_weights_of_the_rows():
     curve, random = exact("depth", LOADS[::2]), np.random.default_rng()
     sd = np.where(np.arange(20) % 2, 0.1e-9, 20e-9)

@@ -148,6 +148,7 @@ def test_von_mises_is_that_of_the_six_stresses(grid):
     np.testing.assert_allclose(data["von_mises [Pa]"], np.sqrt(square), rtol=1e-6, atol=1.0)
 
 
+@pytest.mark.slow
 def test_damage_and_other_case_files_are_noticed(tmp_path, case, solutions):
     write_fields(case, {"fem_reference": solutions["fem_reference"]}, tmp_path)
     with pytest.raises(StoreError, match="another"):

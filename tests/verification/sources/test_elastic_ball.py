@@ -75,6 +75,7 @@ def test_the_ball_seen_as_the_flat_has_its_stresses(source):
     assert np.abs(change).max() < 2e-4 * problem.p_h
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", [semianalytic, fem_reference])
 def test_shear_on_the_ball_opposes_that_on_the_flat(method):
     found, problem = solved(method, replace(BOTH_COATED, friction=0.2)), BOTH_COATED

@@ -41,6 +41,7 @@ def rows_of(found):
     return table_rows(0, solve.key, solve.request, answer(solve.request), solve.places)
 
 
+@pytest.mark.slow
 def test_a_sliding_ellipse_has_the_stresses_of_solve():
     found = ellipse((8e-3, 4e-3), [0.0, 0.25])
     assert [one.source for one in found.solves()] == ["semianalytic", "fem_reference"]
