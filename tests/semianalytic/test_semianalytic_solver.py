@@ -254,7 +254,7 @@ CASES = {
 
 
 def test_a_contact_that_reaches_the_rim_of_the_first_grid_is_found_on_a_wider_one():
-    """On a film of 1000 times its substrate's modulus, which bends: Hertz on the film alone is far smaller."""
+    """On a film of 1000 times its substrate's modulus, which bends: Hertz on the film alone is smaller."""
     given = {"radius": R, "load": W, "substrate": STEEL, "coatings": ((1000 * E, NU, 0.1 * A_H),)}
     exact = integral_equation.solve(**given, estimate_uncertainty=False)
     s = semianalytic.solve(**given, patches=65, estimate_uncertainty=False)
