@@ -77,10 +77,8 @@ _RULES: tuple[tuple[str, Callable[..., list[Piece]]], ...] = (
     (r"(?<!\w)([hfpERUWxyzsaq])( (?:=|/|<|>|−|≤) )", _related),
     (r"(?<!\w)(x)(?= of max )", _letter),
     (r"^([aEhfpRWxz])(?= \[|$)", _letter),
-    (
-        r"(?:(?<=radius )|(?<=load )|(?<=leaves )|(?<=friction )|(?<=pressure )|(?<=over ))([RaWfqp])(?!\w)",
-        _letter,
-    ),
+    (r"(?:(?<=radius )|(?<=load )|(?<=leaves )|(?<=friction )|(?<=pressure ))([RaWfqp])(?!\w)", _letter),
+    (r"(?<=over )([RWfqp]|a(?! [a-z]))(?!\w)", _letter),  # not "over a part"
     (r"(?<=q = )(f p)(?!\w)", _letter),
     (r"(?<!\w)(U)(?![\w.])", _letter),
     (r"(?<=\d )(a)(?=[ .,;)]|$)(?! \w)", _letter),

@@ -49,6 +49,8 @@ def test_symbols_are_typeset_and_strangers_words_escaped():
     assert typeset("3.1e-5 of a_h") == "3.1·10<sup>−5</sup> of <i>a</i><sub>H</sub>"
     assert typeset("<b> my_sigma_xx") == "&lt;b&gt; my_sigma_xx"
     assert unicode("E1/E2 = 2, dW/d delta, 1e-3") == "E_1/E_2 = 2, dW/dδ, 10⁻³"
+    assert "<i>a</i>, then" in typeset("stress over a, then")
+    assert "over a part" in typeset("the mean over a part")
     shifts = [float(shift) for shift in re.findall(r'dy="([^"]*)em"', drawn("p_h + 1"))]
     sizes = [0.78, 1.0]
     assert sum(shift * size for shift, size in zip(shifts, sizes, strict=True)) == pytest.approx(0, abs=0.01)
