@@ -4,12 +4,13 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from code_checked.manufactured_solutions import MATERIALS, unit_square
 
 from fem_reference import solve
 from fem_reference.elasticity import linear_system
 from fem_reference.elasticity.axisymmetric import Discretisation
-from fem_reference.elasticity.linear_system import constrained_solve
+from fem_reference.elasticity.linear_system import ConstrainedFactor, constrained_solve, minimum_degree
 
 
 def problem(harmonic, order=3):
@@ -108,3 +109,17 @@ def test_a_contact_has_the_same_numbers_by_either_factorisation(ball, monkeypatc
     expected, expected_stresses = solved()
     np.testing.assert_allclose(scalars, expected, rtol=1e-9, atol=0)
     np.testing.assert_allclose(stresses, expected_stresses, rtol=0, atol=1e-9)
+
+
+def test_the_compliance_is_that_part_of_the_inverse_and_the_order_fills_little():
+    """On a square grid: the inverse of a dense matrix, in an order that fills less than row by row."""
+    line = sp.diags([-1.0, 2.1, -1.0], [-1, 0, 1], shape=(30, 30))
+    K = sp.kronsum(line, line).tocsc()
+    order, kept = minimum_degree(K), np.array([17, 3, 850])
+    found = ConstrainedFactor.of(K, order, kept)
+    exact = np.linalg.inv(K.toarray())[np.ix_(kept, kept)]
+    np.testing.assert_allclose(found.compliance, exact, rtol=1e-12)
+    assert np.array_equal(np.sort(order), np.arange(900))
+    row_by_row = ConstrainedFactor.of(K, np.arange(900), kept)
+    assert found.factor.nnz < 0.7 * row_by_row.factor.nnz
+    np.testing.assert_allclose(row_by_row.compliance, exact, rtol=1e-12)
