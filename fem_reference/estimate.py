@@ -188,9 +188,10 @@ def contact_estimates(
         tuple(ElasticState.of_contact(state.solid, one, one.ball if k else None) for one in contacts[1:])
         for k, state in enumerate(states)
     )
-    # a force out of balance is a load that the solution does not carry: rounding, across a large contrast
-    truncation = sum(state.truncation(0)[0] for state in states) / final.approach
-    stiffness += (final.residual + truncation) * final.stiffness
+    # a force out of balance is a load that the solution does not carry: rounding, across a large contrast;
+    # what the far field leaves out is a compliance c, and d(1/S) = c
+    left_out = sum(state.truncation(0)[0] for state in states) / final.load
+    stiffness += (final.residual + left_out * final.stiffness) * final.stiffness
     edge = chosen.SAFETY * abs(final.edge_displacement)
     found = estimates(states, coarser, units, approach, radius, edge, final.residual)
     return found, float(stiffness * units.load / units.displacement)

@@ -60,7 +60,7 @@ class ElementSolution(PlainFields):
     contact_radius: float
     approach: float
     peak_pressure: float
-    surface_nodes: np.ndarray
+    surface_nodes: np.ndarray = field(repr=False)
     diagnostics: ElementDiagnostics
     states: tuple[ElasticState, ...] = field(repr=False)
     estimates: tuple[Estimates, ...] = field(repr=False)

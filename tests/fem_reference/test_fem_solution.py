@@ -268,3 +268,15 @@ def test_solutions_are_compared_inside_the_triangles():
     vertices = points.meshes[0].contact_vertices
     assert (vertices[0], vertices[-1]) == (0, mesh.contact_radius)
     assert np.all(np.diff(vertices) > 0)
+
+
+def test_what_the_far_field_leaves_out_is_a_compliance():
+    """1/S is d delta / d W: a near boundary changes both by one compliance, not in one proportion."""
+    load = 20.0
+    given = {"radius": 10e-3, "load": load, "coatings": ((420e9, 0.25, 30e-6),), "substrate": (210e9, 0.3)}
+    near, far = (solve(**given, far=distance) for distance in (20.0, 1000.0))
+    missing = (near.approach - far.approach) / load
+    assert 1 / near.stiffness - 1 / far.stiffness == pytest.approx(missing, rel=0.1)
+    budget = {row[:2]: row[2] for row in near.uncertainty.budget}
+    assert near.stiffness_uncertainty > near.stiffness**2 * budget["approach", "outer boundary"] / load
+    assert len(repr(near)) < 2000
