@@ -123,15 +123,16 @@ class ConstrainedFactor:
     @classmethod
     def of(cls, K: sp.csc_matrix, order: np.ndarray, kept: np.ndarray) -> "ConstrainedFactor":
         """order : the free unknowns in an order that fills the factor little.   kept : of these, the last."""
-        free = np.concatenate([order[~np.isin(order, kept)], kept])
-        return cls(K, free, kept.size, _by_superlu(K[free][:, free].tocsc(), "NATURAL"))
+        A, _, free = condense(K, I=np.concatenate([order[~np.isin(order, kept)], kept]))
+        return cls(K, free, kept.size, _by_superlu(A.tocsc(), "NATURAL"))
 
     @cached_property
     def compliance(self) -> np.ndarray:
         """Rows and columns ``kept`` of the inverse, (kept, kept).
 
-        The inverse of what elimination of all others leaves, in factors the last block of L D L^T:
-        T. A. Davis, Direct Methods for Sparse Linear Systems, SIAM 2006, chapter 6.
+        The inverse of the Schur complement, which elimination of all others leaves of K (F. Zhang, ed., The
+        Schur Complement and Its Applications, Springer 2005, theorem 1.2): the product of the last blocks of
+        the factors L D L^T.
         """
         L = self.factor.L[:, -self.kept :].tocsr()[-self.kept :].toarray()
         inverse = np.linalg.inv(L * self.factor.U.diagonal()[-self.kept :] @ L.T)

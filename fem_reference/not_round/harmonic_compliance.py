@@ -256,8 +256,8 @@ class Meridian:
         free = np.flatnonzero(row >= 0)
         S[np.ix_(free, free)] = self.factor.compliance / self._work
         if self.harmonic == 0:  # moved by what is given far away, the same for every load
-            nothing = np.zeros((3, row.size, 1))
-            S[free] += self.factor.solve(self.loaded, nothing[0], (self._far, np.ones(1)))[row[free]]
+            no_load = self.loaded[:0], np.zeros((0, 1))
+            S[free] += self.factor.solve(*no_load, (self._far, np.ones(1)))[row[free]]
         return S
 
     @cached_property

@@ -81,16 +81,10 @@ class StarPressure:
 
     def polynomials(self, s: np.ndarray, tau: np.ndarray, degree: int) -> np.ndarray:
         """s^n T_j(2 s^2 - 1) cos(n tau) of the terms, (terms,) + points."""
-        x, turn = 2 * s**2 - 1, (s * np.exp(1j * tau)) ** self.fold
-        T = [np.ones_like(x), x]
-        for _ in range(2, degree // 2 + 1):
-            T.append(2 * x * T[-1] - T[-2])
-        found, wave = np.empty((len(self.terms(degree)), *x.shape)), np.ones_like(turn)
-        for k, (_, j) in enumerate(self.terms(degree)):
-            if k and j == 0:
-                wave = wave * turn
-            np.multiply(wave.real, T[j], out=found[k])
-        return found
+        T = np.polynomial.chebyshev.chebvander(2 * s**2 - 1, degree // 2)
+        turn = (s * np.exp(1j * tau)) ** self.fold
+        waves = np.polynomial.polynomial.polyvander(turn, degree // self.fold).real
+        return np.array([waves[..., n // self.fold] * T[..., j] for n, j in self.terms(degree)])
 
     def _wave(self, at: np.ndarray) -> np.ndarray:
         """sum_n c_n Re at^n."""

@@ -235,21 +235,16 @@ def influence_table(
     mine = np.flatnonzero(np.abs(m) <= reach)
     sides = [np.flatnonzero((n >= 0) & (n <= reach)), np.flatnonzero((n < 0) & (n >= -reach))]
     distinct = np.unique(np.abs(n[np.concatenate(sides)]))
+    table = np.zeros((len(influence(m[:1], n[:1])), m.size, n.size))
     if not mine.size or not distinct.size:
-        return np.zeros((len(influence(m[:1], n[:1])), m.size, n.size))
-    table = np.zeros((0, m.size, n.size))
+        return table
     rows = max(1, 16 * numbers.CACHE // distinct.size)
     for some in (mine[i : i + rows] for i in range(0, mine.size, rows)):
         mm, nn = np.meshgrid(m[some], distinct, indexing="ij")
         block = influence(mm.ravel(), nn.ravel()).reshape(-1, *mm.shape)
-        if not len(table):
-            table = np.zeros((len(block), m.size, n.size))
         for side in (one for one in sides if one.size):
-            first, last = np.abs(n[side[[0, -1]]]) - distinct[0]
-            part = (
-                block[:, :, first : last + 1] if first <= last else block[:, :, last : first + 1][..., ::-1]
-            )
-            table[:, some[0] : some[-1] + 1, side[0] : side[-1] + 1] = part
+            mirrored = block[:, :, np.abs(n[side]) - distinct[0]]
+            table[:, some[0] : some[-1] + 1, side[0] : side[-1] + 1] = mirrored
     for component in odd_in_y:
         table[component] *= np.where(n < 0, -1.0, 1.0)
     return table
