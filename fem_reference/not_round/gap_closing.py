@@ -53,6 +53,19 @@ class Closed:
         """The contact by a pressure of another degree; arguments as of ``closed``."""
         return closed(self.compliances, self.pressure.of_degree(degree), height, load, last)
 
+    def as_rich_as_helps(self, most: int, height: Height, load: float, last: int) -> "Closed":
+        """The contact by a higher degree, to ``most``, as long as that closes the gap inside.
+
+        What elements miss at the edge cannot be closed, and a pressure of too many terms would follow it.
+        """
+        found = self
+        while found.pressure.degree + chosen.RAISED <= most:
+            more = found.of_degree(found.pressure.degree + chosen.RAISED, height, load, last)
+            if not more.converged or more.residual(height) > chosen.GAINS * found.residual(height):
+                break
+            found = more
+        return found
+
     def residual(self, height: Height) -> float:
         """Root mean square of the gap left inside, weighted with the pressure, over the approach."""
         at, forces = self._forces

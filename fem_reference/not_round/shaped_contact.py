@@ -74,7 +74,7 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
-    lower : pressure of a lower degree on the companion's mesh
+    companion : pressure on the companion's mesh, whose fields are those of one of a lower degree
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
@@ -89,7 +89,7 @@ class ShapedContact(PressedSolid):
     uncertainty: ElementUncertainty | None
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
-    lower: StarPressure | None = field(default=None, repr=False)
+    companion: StarPressure | None = field(default=None, repr=False)
     typical: float = 0.0
     opposite: "ShapedContact | None" = field(default=None, repr=False)
     frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
@@ -165,10 +165,10 @@ class ShapedContact(PressedSolid):
     def _pressure(self, points: Any, stated: bool) -> ElementAnswer:
         """Pressure [Pa], uncertain by the changes as far from the edge and, at fixed points, there too."""
         p = self._given(points)
-        if not stated or self._coarse is None or self.lower is None:
+        if not stated or self._coarse is None or self.companion is None:
             return ElementAnswer(p)
         U = self._uncertain_pressure(points.x, points.y)
-        companion, lower = (self._other(points, one) for one in (self._coarse.pressure, self.lower))
+        companion, lower = (self._other(points, one) for one in (self.companion, self._coarse.pressure))
         here = BY_CONDITIONS * np.abs(p - companion) + np.abs(companion - lower)
         return ElementAnswer(p, np.maximum(here, U))
 
@@ -186,8 +186,8 @@ class ShapedContact(PressedSolid):
         within one wave of the polynomial around the contact, and next to w, the largest counts.
         """
         assert self._coarse is not None
-        assert self.lower is not None
-        pressures = self._fine.pressure, self._coarse.pressure, self.lower
+        assert self.companion is not None
+        pressures = self._fine.pressure, self.companion, self._coarse.pressure
         w, turn = 1 - np.geomspace(1, 1e-4, 60), np.linspace(0, np.pi, 97)
         fine, companion, lower = (one(*one.points(w[:, None], turn)) for one in pressures)
         change = BY_CONDITIONS * np.abs(fine - companion) + np.abs(companion - lower)
@@ -258,7 +258,8 @@ def solve_shape(
     begin = StarPressure.of_ellipse(
         shape.centre, (first * axes[0], first * axes[1]), load / E, shape.fold, chosen.ROUGH_DEGREE
     )
-    degree = usual[3] * waves if degree is None else degree
+    least = usual[3] * waves if degree is None else degree
+    most = chosen.HIGHEST_DEGREE if degree is None else degree
 
     def solids(reach: float) -> tuple[LayeredSolid, ...]:
         scaled = tuple(LayeredSolid.scaled(*one, reach, far, E) for one in layers)
@@ -312,21 +313,21 @@ def solve_shape(
     unit = Scales(length=reach, pressure=E, modulus=E)
 
     grid = ShapedGrid(size, surface, harmonics, chosen.MARGIN, chosen.DENSITY)
-    found = on_mesh(reach, grid, begin.of_degree(degree))
+    found = on_mesh(reach, grid, begin.of_degree(least)).as_rich_as_helps(most, *arguments(reach, grid))
     found.check(shape.scaled(reach), indenter[0])
     numbers, residual = _numbers(found), found.residual(shape.scaled(reach))
     sliding = (friction, -friction)
     fine = [_fields(found, k, sliding[k], surface) for k in range(len(layers))]
     coarse: list[OffAxisFields | None] = [None] * len(layers)
-    uncertainty, extents, lower = None, None, None
+    uncertainty, extents, other = None, None, None
     if estimate_uncertainty:
         r = chosen.SHAPED_COARSER
         coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
         start = found.pressure.scaled(1 / reach)
         companion = on_mesh(reach, coarser, start)
-        fewer = companion.of_degree(degree - chosen.LOWER, *arguments(reach, coarser))
-        lower = fewer.pressure
-        coarse = [_fields(companion, k, sliding[k], r * surface) for k in range(len(layers))]
+        fewer = companion.of_degree(found.pressure.degree - chosen.LOWER, *arguments(reach, coarser))
+        other = companion.pressure
+        coarse = [_fields(fewer, k, sliding[k], r * surface) for k in range(len(layers))]
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
         change[1] = max(change[1], chosen.STIFF * (size / default[0]) ** 4 * numbers[1])
         cut = np.abs(_numbers(companion) - _numbers(fewer))
@@ -367,7 +368,7 @@ def solve_shape(
                 uncertainty=uncertainty,
                 extent_uncertainty=extents,
                 height=shape.height,
-                lower=lower,
+                companion=other,
                 typical=_typical(PressedSolid(*pair, unit)) if estimate_uncertainty else 0.0,
                 opposite=sides[0] if sides else None,
             )
