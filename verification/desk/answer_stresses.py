@@ -10,7 +10,7 @@ adds to sigma_xx, sigma_yy within it alone: the half-space below balances it at 
 interface change near a free edge of the coating only, which is not part of this.
 """
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import accumulate
@@ -39,9 +39,10 @@ from verification.study.friction_planes import (
 from verification.study.largest_stresses import (
     Located,
     Measure,
+    Unstated,
     inside,
     largest,
-    propagated,
+    stated,
     tensile,
     vertex,
     with_residual,
@@ -110,7 +111,7 @@ def stresses(
         twin = (seen.coatings, seen.substrate, own, sublayers)
         if twin not in searched:
             views = [_Layers(on_body(side, body), seen, own, sublayers) for side in sides]
-            searched[twin] = views[0], [list(one.extremes()) for one in views]
+            searched[twin] = views[0], [one.extremes() for one in views]
         layered, (along, *across) = searched[twin]
         places = [  # without -0
             Extreme(body, quantity, where, at.value, at.uncertainty, turned * at.x + 0.0, at.z)
@@ -166,10 +167,6 @@ class _Layers:
         """``measure`` of a stress with the residual stress of its layer."""
         return with_residual(measure, self.residual[layer])
 
-    def _shown(self, found: Located, layer: int) -> Located:
-        """Largest tension of a layer as shown: ``tensile`` without residual stress, else with its sign."""
-        return found if self.residual[layer] else tensile(found)
-
     def name(self, number: int) -> str:
         return "substrate" if number == len(self.bounds) - 1 else f"coating {number + 1}"
 
@@ -179,31 +176,41 @@ class _Layers:
             yield f"base of {self.name(number)}", self.bases[k - 1]
             yield f"top of {self.name(number + 1)}", self.tops[k]
 
-    def extremes(self) -> Iterator[tuple[str, str, Located]]:
+    def extremes(self) -> list[tuple[str, str, Located]]:
         """(quantity, where, the largest), the place in the frame of the body."""
+        found = list(self._found())
+        at = stated([one for *_, one in found], self.parts, self.problem.friction)
+        return [
+            (quantity, where, tensile(one) if alone else one)
+            for (quantity, where, alone, _), one in zip(found, at, strict=True)
+        ]
+
+    def _found(self) -> Iterator[tuple[str, str, bool, Located]]:
+        """(quantity, where, whether it is shown as a tension alone, the largest): without residual stress."""
         f = self.problem.friction
-        yield "sigma_xx", "surface", self._surface()
+        yield "sigma_xx", "surface", not self.residual[0], self._surface()
         for where, line in list(self.lines())[1:]:
             measure = self._total(lambda s: s[XX], line.layer)
-            yield "sigma_xx", where, self._shown(largest(line, measure, f), line.layer)
+            yield "sigma_xx", where, not self.residual[line.layer], largest(line, measure, f)
         for k, base in enumerate(self.bases[i - 1] for i in self.bounds[1:]):
-            yield "|sigma_xz|", f"interface {k + 1}", largest(base, lambda s: np.abs(s[XZ]), f)
-            yield "sigma_zz", f"interface {k + 1}", tensile(largest(base, lambda s: s[ZZ], f))
+            yield "|sigma_xz|", f"interface {k + 1}", False, largest(base, lambda s: np.abs(s[XZ]), f)
+            yield "sigma_zz", f"interface {k + 1}", True, largest(base, lambda s: s[ZZ], f)
         for number, layer in enumerate(self.bounds):
             below = (*self.bounds, layer + 1)[number + 1]
             if below - layer > 1:
                 for quantity in self._measures(layer):
-                    yield quantity, self.name(number), self._graded(quantity, range(layer, below))
+                    best, alone = self._graded(quantity, range(layer, below))
+                    yield quantity, self.name(number), alone, best
                 continue
             # They only locate: the uncertainty is evaluated at the place found.
             unstated = replace(self.parts, stated=False)
             between, knots = inner_planes(unstated, self.problem.interfaces, layer)
             planes = [self.tops[layer], *between, *self.bases[layer : layer + 1]]
             for quantity, measure in self._measures(layer).items():
-                ends = [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
-                within = inside(self.parts, planes, knots, f, measure) + self._between(planes, measure)
-                best = max([*ends, *within], key=lambda at: at.value)
-                yield quantity, self.name(number), self._shown(best, layer)
+                on = [largest(one, measure, f) for one in planes]
+                within = inside(self.parts, planes, knots, f, measure) + self._between(on, measure)
+                found = max([on[0], on[-1], *within], key=lambda at: at.value)
+                yield quantity, self.name(number), not self.residual[layer], found
 
     def _measures(self, layer: int) -> dict[str, Measure]:
         """Each measure of the stress of a ``layer``, with its residual stress."""
@@ -213,8 +220,11 @@ class _Layers:
         of |= {"tau_max": largest_shear, "strain": strain}
         return {quantity: self._total(measure, layer) for quantity, measure in of.items()}
 
-    def _graded(self, quantity: str, layers: range) -> Located:
-        """The largest at the top and base of every sub-layer; uncertain too by the maximum between them."""
+    def _graded(self, quantity: str, layers: range) -> tuple[Located, bool]:
+        """The largest at the top and base of every sub-layer; uncertain too by the maximum between them.
+
+        With it whether its sub-layer has no residual stress.
+        """
         found = []
         for layer in layers:
             measure = self._measures(layer)[quantity]
@@ -226,28 +236,27 @@ class _Layers:
         outer = at.z in (self.tops[layers[0]].z, self.bases[layers[-1]].z)
         near = sorted(one.value for one in found[max(best - 1, 0) : best + 2])
         excess = 0.0 if outer else near[-1] - near[-2]
-        return self._shown(replace(at, uncertainty=at.uncertainty + excess), layers[best])
+        return replace(at, uncertainty=at.uncertainty + excess), not self.residual[layers[best]]
 
-    def _between(self, planes: list[DepthLine], measure: Measure) -> list[Located]:
+    def _between(self, found: Sequence[Unstated], measure: Measure) -> list[Unstated]:
         """The largest on the planes between, moved to the vertex in depth; none where an outer plane has it.
 
-        Unlike ``inside`` it needs no interpolation in depth, whose error exceeds a small sigma_1 under strong
-        compression. Its uncertainty contains the change by the move.
+        found : on all planes.   Unlike ``inside`` it needs no interpolation in depth, whose error exceeds a
+        small sigma_1 under strong compression. Its uncertainty contains the change by the move.
         """
-        found = [largest(one, measure, self.problem.friction) for one in planes]
         k = int(np.argmax([at.value for at in found]))
-        if not 0 < k < len(planes) - 1:
+        if not 0 < k < len(found) - 1:
             return []
-        near = found[k - 1 : k + 2]
+        near, layer = found[k - 1 : k + 2], found[0].layer
         z = np.array([at.z for at in near])
         depth = vertex(z, np.array([at.value for at in near]))
         x = np.array([found[k].x, np.interp(depth, z, [at.x for at in near])])
         z = np.array([found[k].z, depth])
-        stress, bound = stress_at(self.parts, x, z, planes[1].layer, self.problem.friction)
+        stress = stress_at(self.parts, x, z, layer, self.problem.friction)
         values = [float(measure(one)) for one in stress.T]
-        best = int(np.argmax(values))
-        spread = propagated(measure, stress[:, best], bound[:, best]) + abs(values[1] - values[0])
-        return [Located(values[best], spread, float(x[best]), float(z[best]))]
+        best, moved = int(np.argmax(values)), abs(values[1] - values[0])
+        at, radii = (float(x[best]), float(z[best])), np.abs(x[[best]])
+        return [Unstated(values[best], moved, *at, layer, measure, stress[:, best], radii)]
 
     def _surface(self) -> Located:
         """The largest tension of the surface, with the cusp at the contact edge as a candidate."""
@@ -259,4 +268,4 @@ class _Layers:
         U[search.edges] = np.nan if around is None else around[0, 0]
         found = search.largest(value, None if around is None else U)
         spread = float("nan") if found.uncertainty is None else found.uncertainty
-        return self._shown(Located(found.value + self.residual[0], spread, found.place, 0.0), 0)
+        return Located(found.value + self.residual[0], spread, found.place, 0.0)

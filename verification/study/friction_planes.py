@@ -95,21 +95,16 @@ class DepthLine:
         """xx, yy, zz, xz [Pa] at signed ``x`` [m], (4,) + shape of ``x``."""
         return _signed(self.fine, x, friction)
 
-    def uncertainty(self, x: float, friction: float) -> Array:
-        """Uncertainty [Pa] (4,) at x: that of the solution and 1/8 of the error with half the samples."""
-        if not self.parts.stated:
-            return np.full(4, np.nan)
+    def beside(self, x: float) -> Array:
+        """The knots [m] around x, whose uncertainties count there: one, or two."""
         i = int(np.clip(np.searchsorted(self.knots, abs(x)), 1, self.knots.size - 1))
         at_knot = np.isclose(abs(x), self.knots, rtol=1e-12, atol=0)
-        near = self.knots[at_knot if at_knot.any() else slice(i - 1, i + 1)]
-        bound = self.parts(near, self.z, self.layer)[2]
-        if self.edge is not None:
-            bound[:, :, near == self.parts.solution.contact_radius] = self.edge[..., None]
-        beside = bound.max(axis=2)
-        stated = self.parts.uncertainty(beside if x >= 0 else beside[::-1], friction)
+        return self.knots[at_knot if at_knot.any() else slice(i - 1, i + 1)]
+
+    def interpolation(self, x: float, friction: float) -> Array:
+        """Uncertainty [Pa] (4,) by the samples: 1/8 of the error with half of them."""
         fine, coarse = (_signed(curve, np.array([x]), friction) for curve in (self.fine, self.coarse))
-        interpolation = np.abs(fine - coarse)[:, 0] / 8
-        return stated + interpolation
+        return np.abs(fine - coarse)[:, 0] / 8
 
 
 def _signed(curves: tuple[Curve, Curve], x: Array, friction: float) -> Array:
@@ -119,11 +114,10 @@ def _signed(curves: tuple[Curve, Curve], x: Array, friction: float) -> Array:
     return sign * (normal + friction * np.where(left, -1.0, 1.0) * tangential)
 
 
-def stress_at(parts: Parts, x: Array, z: Array, layer: int, friction: float) -> tuple[Array, Array]:
-    """xx, yy, zz, xz [Pa] at points (x, 0, z), (4, n), with their uncertainty: the solution's own."""
-    normal, tangential, bound = parts(np.abs(x), z, layer)
-    stress = _signed((lambda _: normal, lambda _: tangential), x, friction)
-    return stress, parts.uncertainty(np.where(x < 0, bound[::-1], bound), friction)
+def stress_at(parts: Parts, x: Array, z: Array, layer: int, friction: float) -> Array:
+    """xx, yy, zz, xz [Pa] at points (x, 0, z), (4, n)."""
+    normal, tangential, _ = replace(parts, stated=False)(np.abs(x), z, layer)
+    return _signed((lambda _: normal, lambda _: tangential), x, friction)
 
 
 def outer_planes(

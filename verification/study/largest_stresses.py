@@ -55,6 +55,43 @@ class Located:
     z: float
 
 
+@dataclass(frozen=True)
+class Unstated(Located):
+    """The largest ``measure`` of a ``stress``, (4,), whose ``uncertainty`` lacks that of the source.
+
+    layer : that holds it.   radii : at which the uncertainty is taken, the largest.   added : by
+    interpolation [Pa], (4,).   edge : in place of that of the source at the contact edge, (2, 4).
+    """
+
+    layer: int
+    measure: Measure
+    stress: Array
+    radii: Array
+    added: Array | float = 0.0
+    edge: Array | None = None
+
+
+def stated(found: Sequence[Located], parts: Parts, friction: float) -> list[Located]:
+    """``found`` with the uncertainties of the source, evaluated together in each layer."""
+    out, of_layer = list(found), dict[int, dict[int, Unstated]]()
+    for number, one in enumerate(found):
+        if isinstance(one, Unstated):
+            of_layer.setdefault(one.layer, {})[number] = one
+    for layer, places in of_layer.items():
+        sizes = [one.radii.size for one in places.values()]
+        z = np.repeat([one.z for one in places.values()], sizes)
+        bounds = parts(np.concatenate([one.radii for one in places.values()]), z, layer)[2]
+        split = np.split(bounds, np.cumsum(sizes)[:-1], axis=2)
+        for (number, one), bound in zip(places.items(), split, strict=True):
+            if one.edge is not None:
+                bound[:, :, one.radii == parts.solution.contact_radius] = one.edge[..., None]
+            beside = bound.max(axis=2)
+            U = parts.uncertainty(beside if one.x >= 0 else beside[::-1], friction) + one.added
+            total = one.uncertainty + propagated(one.measure, one.stress, U)
+            out[number] = Located(one.value, total, one.x, one.z)
+    return out
+
+
 def quantities(
     solution: ContactSolution,
     problem: CoatedContact,
@@ -89,10 +126,11 @@ def quantities(
     layers = {"von_mises_coating": range(n), "von_mises_substrate": range(n, n + 1)}
     found: dict[tuple[float, float], dict[str, Located]] = {}
     for f in frictions:
-        alone = {
-            name: [(line.layer, largest(line, measure, f)) for line in many]
-            for name, (many, measure) in lines.items()
-        }
+        asked = [(name, line, measure) for name, (many, measure) in lines.items() for line in many]
+        at = stated([largest(line, measure, f) for _, line, measure in asked], parts, f)
+        alone: dict[str, list[tuple[int, Located]]] = {}
+        for (name, line, _), one in zip(asked, at, strict=True):
+            alone.setdefault(name, []).append((line.layer, one))
         for stress in residual:
             here = {}
             for name, places in alone.items():
@@ -110,7 +148,7 @@ def quantities(
                     candidates += [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
                     candidates += inside(parts, planes, inner[layer][1], f, measure)
                 here[name] = max(candidates, key=lambda place: place.value)
-            found[stress, f] = here
+            found[stress, f] = dict(zip(here, stated(list(here.values()), parts, f), strict=True))
     return found
 
 
@@ -122,7 +160,7 @@ def with_residual(measure: Measure, residual: float) -> Measure:
     return lambda s: measure(s + added.reshape(4, *[1] * (s.ndim - 1)))
 
 
-def largest(line: DepthLine, measure: Measure, friction: float) -> Located:
+def largest(line: DepthLine, measure: Measure, friction: float) -> Unstated:
     """The largest ``measure`` of the stresses along a line."""
     x = _both_sides(line.knots, DENSE)
     value = measure(line(x, friction))
@@ -137,13 +175,13 @@ def largest(line: DepthLine, measure: Measure, friction: float) -> Located:
         )
         if -found.fun > best:
             at, best = float(found.x), -float(found.fun)
-    stress = line(np.array([at]), friction)[:, 0]
-    return Located(best, propagated(measure, stress, line.uncertainty(at, friction)), at, line.z)
+    stress, added = line(np.array([at]), friction)[:, 0], line.interpolation(at, friction)
+    return Unstated(best, 0.0, at, line.z, line.layer, measure, stress, line.beside(at), added, line.edge)
 
 
 def inside(
     parts: Parts, planes: Sequence[DepthLine], knots: Array, friction: float, measure: Measure
-) -> list[Located]:
+) -> list[Unstated]:
     """The largest ``measure`` between the planes of a layer; none where it lies on an outer one."""
     x = _both_sides(knots, FINE)
     depth = np.array([p.z for p in planes])
@@ -155,11 +193,11 @@ def inside(
         return []
     at_z = vertex(z[i - 1 : i + 2], value[i - 1 : i + 2, j])
     at_x = vertex(x[j - 1 : j + 2], value[i, j - 1 : j + 2])
-    there = np.array([at_x]), np.array([at_z])
-    stress_there, bound = (found[:, 0] for found in stress_at(parts, *there, planes[1].layer, friction))
+    there, layer = np.array([at_x]), planes[1].layer
+    stress_there = stress_at(parts, there, np.array([at_z]), layer, friction)[:, 0]
     best = float(measure(stress_there))
     interpolation = abs(best - float(value[i, j]))  # which may have located another point than the maximum
-    return [Located(best, propagated(measure, stress_there, bound) + interpolation, at_x, at_z)]
+    return [Unstated(best, interpolation, at_x, at_z, layer, measure, stress_there, np.abs(there))]
 
 
 def _both_sides(knots: Array, fine: int) -> Array:
