@@ -53,18 +53,29 @@ class Closed:
         """The contact by a pressure of another degree; arguments as of ``closed``."""
         return closed(self.compliances, self.pressure.of_degree(degree), height, load, last)
 
-    def as_rich_as_helps(self, most: int, height: Height, load: float, last: int) -> "Closed":
-        """The contact by a higher degree, to ``most``, as long as that closes the gap inside.
+    def as_rich_as_helps(self, most: int, height: Height, load: float, last: int) -> tuple["Closed", float]:
+        """The contact by a higher degree, to ``most``, as long as each halves how much it moves the edge.
 
         What elements miss at the edge cannot be closed, and a pressure of too many terms would follow it.
+        Returned with what the last degree moved, see ``moved``.
         """
         found = self
-        while found.pressure.degree + chosen.RAISED <= most:
-            more = found.of_degree(found.pressure.degree + chosen.RAISED, height, load, last)
-            if not more.converged or more.residual(height) > chosen.GAINS * found.residual(height):
+        by = found.moved(found.of_degree(found.pressure.degree - chosen.LOWER, height, load, last))
+        while found.pressure.degree + chosen.LOWER <= most:
+            more = found.of_degree(found.pressure.degree + chosen.LOWER, height, load, last)
+            if not more.converged or more.moved(found) > by / 2:
                 break
-            found = more
-        return found
+            found, by = more, more.moved(found)
+        return found, by
+
+    def moved(self, other: "Closed") -> float:
+        """Change of the contact radius to that of the ``other``, over it, if no part of the edge made up for
+        another."""
+        p = self.pressure
+        x, y = np.array(p.contour_points)
+        away = np.hypot(*(np.array(other.pressure.contour_points) - (x, y)))
+        area = np.trapezoid(away, np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))]))
+        return float(area * (2 if p.centre else 1) / p.area)
 
     def residual(self, height: Height) -> float:
         """Root mean square of the gap left inside, weighted with the pressure, over the approach."""

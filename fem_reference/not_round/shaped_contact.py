@@ -313,7 +313,8 @@ def solve_shape(
     unit = Scales(length=reach, pressure=E, modulus=E)
 
     grid = ShapedGrid(size, surface, harmonics, chosen.MARGIN, chosen.DENSITY)
-    found = on_mesh(reach, grid, begin.of_degree(least)).as_rich_as_helps(most, *arguments(reach, grid))
+    poorest = on_mesh(reach, grid, begin.of_degree(least))
+    found, moved = poorest.as_rich_as_helps(most, *arguments(reach, grid))
     found.check(shape.scaled(reach), indenter[0])
     numbers, residual = _numbers(found), found.residual(shape.scaled(reach))
     sliding = (friction, -friction)
@@ -329,8 +330,11 @@ def solve_shape(
         other = companion.pressure
         coarse = [_fields(fewer, k, sliding[k], r * surface) for k in range(len(layers))]
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
+        # in a change of the area parts of the edge may make up for each other
+        change[0] = BY_CONDITIONS * found.moved(companion) * numbers[0]
         change[1] = max(change[1], chosen.STIFF * (size / default[0]) ** 4 * numbers[1])
         cut = np.abs(_numbers(companion) - _numbers(fewer))
+        cut[0] = chosen.OF_FIELDS * moved * numbers[0]
         left = np.maximum(residual, chosen.OF_FIELDS * found.errors) * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
