@@ -1,5 +1,6 @@
 """A pool of processes: tasks side by side, each with a time limit."""
 
+import os
 import select
 import signal
 import sys
@@ -12,7 +13,7 @@ from typing import TypeVar
 
 from verification.running.pool.executor_tasks import solved_by
 from verification.running.pool.pool_task import Task
-from verification.running.pool.process_slot import Group, Slot
+from verification.running.pool.process_slot import THREAD_VARIABLES, Group, Slot
 from verification.running.provenance import cores
 
 T = TypeVar("T")
@@ -48,8 +49,7 @@ def run_tasks(
             count = sum(map(len, waiting))
             sys.stderr.write(f"coatcheck: {count} tasks are run here: {reason}\n")
         meanwhile = lambda: None  # noqa: E731
-    threads = max(1, cores() // jobs)
-    slots = [Slot[T](threads) for _ in range(min(jobs, len(waiting)))]
+    slots = [Slot[T](_threads(jobs)) for _ in range(min(jobs, len(waiting)))]
     try:
         with _interrupts() as seen:
             _start_idle(slots, waiting, started)
@@ -68,6 +68,12 @@ def run_tasks(
             slot.stop()
             slot.errors.close()
     return [results[number] for number in range(len(tasks))]
+
+
+def _threads(jobs: int) -> int:
+    """Threads of each process: its share of the processors, or fewer where the environment says so."""
+    stated = [int(given) for name in THREAD_VARIABLES if (given := os.environ.get(name, "")).isdecimal()]
+    return max(1, min([cores() // jobs, *stated]))
 
 
 @contextmanager
