@@ -54,7 +54,7 @@ class Closed:
         return closed(self.compliances, self.pressure.of_degree(degree), height, load, last)
 
     def as_rich_as_helps(self, most: int, height: Height, load: float, last: int) -> tuple["Closed", float]:
-        """The contact by a higher degree, to ``most``, as long as each halves how much it moves the edge.
+        """The contact by a higher degree, to ``most``, as long as each moves the edge by ``LESS``.
 
         What elements miss at the edge cannot be closed, and a pressure of too many terms would follow it.
         Returned with what the last degree moved, see ``moved``.
@@ -63,7 +63,7 @@ class Closed:
         by = found.moved(found.of_degree(found.pressure.degree - chosen.LOWER, height, load, last))
         while found.pressure.degree + chosen.LOWER <= most:
             more = found.of_degree(found.pressure.degree + chosen.LOWER, height, load, last)
-            if not more.converged or more.moved(found) > by / 2:
+            if not more.converged or more.moved(found) > chosen.LESS * by:
                 break
             found, by = more, more.moved(found)
         return found, by

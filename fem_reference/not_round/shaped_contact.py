@@ -169,7 +169,7 @@ class ShapedContact(PressedSolid):
             return ElementAnswer(p)
         U = self._uncertain_pressure(points.x, points.y)
         companion, lower = (self._other(points, one) for one in (self.companion, self._coarse.pressure))
-        here = BY_CONDITIONS * np.abs(p - companion) + np.abs(companion - lower)
+        here = BY_CONDITIONS * np.abs(p - companion) + chosen.OF_FIELDS * np.abs(companion - lower)
         return ElementAnswer(p, np.maximum(here, U))
 
     def _uncertain_pressure(self, x: Any, y: Any) -> np.ndarray:
@@ -190,7 +190,7 @@ class ShapedContact(PressedSolid):
         pressures = self._fine.pressure, self.companion, self._coarse.pressure
         w, turn = 1 - np.geomspace(1, 1e-4, 60), np.linspace(0, np.pi, 97)
         fine, companion, lower = (one(*one.points(w[:, None], turn)) for one in pressures)
-        change = BY_CONDITIONS * np.abs(fine - companion) + np.abs(companion - lower)
+        change = BY_CONDITIONS * np.abs(fine - companion) + chosen.OF_FIELDS * np.abs(companion - lower)
         wave = 2 * round(turn.size / self._fine.pressure.degree) + 1
         largest = maximum_filter(change, (5, wave), mode=("nearest", "mirror")) * self._units.pressure
         return RegularGridInterpolator((np.append(w, 1.0), turn), np.vstack([largest, largest[-1:]]))
@@ -333,7 +333,7 @@ def solve_shape(
         # in a change of the area parts of the edge may make up for each other
         change[0] = BY_CONDITIONS * found.moved(companion) * numbers[0]
         change[1] = max(change[1], chosen.STIFF * (size / default[0]) ** 4 * numbers[1])
-        cut = np.abs(_numbers(companion) - _numbers(fewer))
+        cut = chosen.OF_FIELDS * np.abs(_numbers(companion) - _numbers(fewer))
         cut[0] = chosen.OF_FIELDS * moved * numbers[0]
         left = np.maximum(residual, chosen.OF_FIELDS * found.errors) * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
