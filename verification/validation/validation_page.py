@@ -150,9 +150,9 @@ def _details(one: Validated) -> list[Part]:
 
 
 def _not_compared() -> Table:
-    found = [one for kind in ("set", "excluded") for one in described()[kind] if "reason" in one]
+    found = [one for kind in ("set", "excluded", "seen") for one in described()[kind] if "reason" in one]
     rows = [row(words(one["title"]), words(one["reason"]), words(one["source"])) for one in found]
-    return Table("Measurements at hand that are not admissible", ["measurement", "reason", "source"], rows)
+    return Table("Measurements not admissible, or not to be had", ["measurement", "reason", "source"], rows)
 
 
 def _drawn(one: Validated) -> Markup:
