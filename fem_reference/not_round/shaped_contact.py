@@ -122,17 +122,19 @@ class ShapedContact(PressedSolid):
         smeared = np.where(np.asarray(points.z) == 0, self._smeared(x, y), 0.0)
         distance = np.hypot(x, y) / (chosen.AXIS_SAFETY[1] * self._units.length)
         safety = chosen.OF_FIELDS * (1 + (chosen.AXIS_SAFETY[0] - 1) * np.maximum(1 - distance, 0))
-        of_pressure = np.where(np.asarray(points.z) == 0, self._uncertain_pressure(x, y), 0.0)
+        of_pressure = np.where(np.asarray(points.z) == 0, self._uncertain_pressure(x, y, beyond=True), 0.0)
         change = np.maximum(safety * U, chosen.OF_FIELDS * self.typical)
         return ElementAnswer(value, np.maximum(change, of_pressure) + self._errors[2] + smeared)
 
-    @property
+    @cached_property
     def _errors(self) -> tuple[float, ...]:
-        """Uncertainties of contact radius, approach, peak pressure and both extents."""
+        """Uncertainties of contact radius, approach, peak pressure (no less than there) and both extents."""
         one, extents = self.uncertainty, self.extent_uncertainty
         assert one is not None
         assert extents is not None
-        return (one.contact_radius, one.approach, one.peak_pressure, *extents)
+        centre = self._fine.pressure.centre * self._units.length
+        peak = max(one.peak_pressure, float(self._uncertain_pressure([centre], 0.0)[0]))
+        return (one.contact_radius, one.approach, peak, *extents)
 
     def _smeared(self, x: Any, y: Any) -> np.ndarray:
         """Stress on the surface [Pa] that the elements may smear where the pressure has its root.
@@ -172,11 +174,15 @@ class ShapedContact(PressedSolid):
         here = BY_CONDITIONS * np.abs(p - companion) + chosen.OF_FIELDS * np.abs(companion - lower)
         return ElementAnswer(p, np.maximum(here, U))
 
-    def _uncertain_pressure(self, x: Any, y: Any) -> np.ndarray:
-        """Uncertainty of the pressure [Pa] at points as far from the edge as x, y; 0 outside."""
+    def _uncertain_pressure(self, x: Any, y: Any, beyond: bool = False) -> np.ndarray:
+        """Uncertainty of the pressure [Pa] at points as far from the edge as x, y.
+
+        Outside 0, or ``beyond`` what it is as far inside: a pressure that is wrong there moves the stress.
+        """
         w, tau = self._fine.pressure.polar(*(np.asarray(v) / self._units.length for v in (x, y)))
-        found = self._changes_inwards(np.stack([np.minimum(w, 1), tau], axis=-1))
-        return np.where(w < 1, found, 0.0)
+        inwards = np.where(w < 1, w, 2 - w if beyond else 0 * w)
+        found = self._changes_inwards(np.stack([np.maximum(inwards, 0), tau], axis=-1))
+        return np.where((w < 1) | ((w < 2) & beyond), found, 0.0)
 
     @cached_property
     def _changes_inwards(self) -> RegularGridInterpolator:
