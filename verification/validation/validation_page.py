@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from verification.page.html_page import render_sections
 from verification.page.page_parts import Gallery, Panel, Part, Section, Table, number, row, words
+from verification.problem.array_types import Array
 from verification.sources.references.layered_half_space import contact_modulus
 from verification.validation.measured_modulus import described
 from verification.validation.validation_metric import (
@@ -31,6 +32,10 @@ NOT_YET = (
 
 def _percent(value: float) -> str:
     return f"{100 * value:+.1f} %".replace("-", "−")
+
+
+def _signed(value: float) -> str:
+    return f"{value:+.2f}".replace("-", "−")
 
 
 def _size(value: float) -> str:
@@ -120,7 +125,7 @@ def _details(one: Validated) -> list[Part]:
                 number(one.E[i], _percent),
                 number(one.u_random[i], _size),
                 number(float(one.u_val[i]), _size),
-                number(float(one.E[i] / one.u_val[i]), "{:+.2f}".format),
+                number(float(one.E[i] / one.u_val[i]), _signed),
             )
             for i, k in enumerate(rows)
         ],
@@ -145,7 +150,13 @@ def _details(one: Validated) -> list[Part]:
         ],
     )
     figure = Panel("Modulus against contact radius over film thickness", _drawn(one), "", "wide")
-    caption = f"{data.source}. Compared: {data.because} Assumed: {data.assumed}."
+    errors = {
+        name: _size(float(np.sqrt(np.mean((M / data.D[rows] - 1) ** 2))))
+        for name, M in _of_formulas(one, data.a[rows]).items()
+    }
+    formulas = ", ".join(f"{name} by {error}" for name, error in errors.items())
+    caption = f"{data.source}. Compared: {data.because} Assumed: {data.assumed}. In these rows formulas in "
+    caption += f"common use are off: {formulas} rms."
     return [Part(answer(one), [table], Gallery([], [figure], caption), data.title), Part("", [inputs])]
 
 
@@ -153,6 +164,29 @@ def _not_compared() -> Table:
     found = [one for kind in ("set", "excluded", "seen") for one in described()[kind] if "reason" in one]
     rows = [row(words(one["title"]), words(one["reason"]), words(one["source"])) for one in found]
     return Table("Measurements not admissible, or not to be had", ["measurement", "reason", "source"], rows)
+
+
+def common_formulas(a: Array, t: float, film: float, base: float, nu: float) -> dict[str, Array]:
+    """Plane strain moduli [Pa] that formulas in common use give a film of thickness t [m] at radius a [m].
+
+    Gao, Chiu and Lee (1992) with their weight I_0 of the moduli, linear in it, and Bec et al. (2006):
+
+        M = M_s + (M_f - M_s) I_0,   1/M = 2 a/(1 + 2 t/(pi a)) (t/(pi a^2 M_f) + 1/(2 a M_s)),
+        I_0 = (2/pi) arctan x + ((1 - 2 nu) x ln(1 + 1/x^2) - x/(1 + x^2)) / (2 pi (1 - nu)),   x = t/a
+
+    film, base : M_f and M_s.   nu : of the film.
+    """
+    x = t / a
+    weight = ((1 - 2 * nu) * x * np.log1p(1 / x**2) - x / (1 + x**2)) / (2 * np.pi * (1 - nu))
+    weight += 2 / np.pi * np.arctan(x)
+    compliance = 2 * a / (1 + 2 * x / np.pi) * (t / (np.pi * a**2 * film) + 1 / (2 * a * base))
+    return {"Gao et al. 1992": base + (film - base) * weight, "Bec et al. 2006": 1 / compliance}
+
+
+def _of_formulas(one: Validated, a: Array) -> dict[str, Array]:
+    layer, solid = one.measured.layers[0], (one.measured.coatings, substrate())
+    moduli = contact_modulus(*solid), contact_modulus((), substrate())
+    return common_formulas(a, layer.thickness, *moduli, layer.nu)
 
 
 def _drawn(one: Validated) -> Markup:
@@ -167,6 +201,8 @@ def _drawn(one: Validated) -> Markup:
         axes = figure.subplots()
         axes.fill_between(a / t, exact * (1 - band), exact * (1 + band), color="#0072B2", alpha=0.25, lw=0)
         axes.plot(a / t, exact, color="#0072B2", label="layers, with u_input")
+        for (name, moduli), style in zip(_of_formulas(one, a).items(), ("--", "-."), strict=True):
+            axes.plot(a / t, moduli / 1e9, color="#D55E00", ls=style, lw=0.9, label=name)
         for value, name in ((contact_modulus(*solid), "bare film"), (base, "bare substrate")):
             axes.axhline(value / 1e9, color="0.5", lw=0.8, ls=":")
             axes.annotate(name, (1, value / 1e9), ha="right", va="bottom", xycoords=("axes fraction", "data"))

@@ -55,6 +55,15 @@ def test_stored_numbers_are_those_of_the_method_and_of_the_exact_solution(record
     assert len(one.elements) == 3
 
 
+def test_common_formulas_go_from_the_film_to_the_substrate():
+    for M in validation_page.common_formulas(np.array([1e-12, 1.0]), 1e-6, 70e9, 180e9, 0.2).values():
+        assert pytest.approx([70e9, 180e9], rel=1e-4) == M
+    (gao, bec) = validation_page.common_formulas(np.array([1e-6]), 1e-6, 70e9, 180e9, 0.2).values()
+    # I_0 = 1/2 + (0.6 ln 2 - 1/2)/(1.6 pi); compliances 1/(pi M_f) + 1/(2 M_s) over 1/2 + 1/pi
+    assert gao == pytest.approx(180e9 - 110e9 * (0.5 + (0.6 * np.log(2) - 0.5) / (1.6 * np.pi)))
+    assert bec == pytest.approx((0.5 + 1 / np.pi) / (1 / (np.pi * 70e9) + 1 / (2 * 180e9)))
+
+
 def test_page_shows_the_numbers_of_the_record_and_every_reason(record):
     text = validation_page.page(record)
     assert text.count("<img") == sum(not one.measured.reason for one in record.sets)
