@@ -265,7 +265,7 @@ def solve_shape(
         shape.centre, (first * axes[0], first * axes[1]), load / E, shape.fold, chosen.ROUGH_DEGREE
     )
     least = usual[3] * waves if degree is None else degree
-    most = chosen.HIGHEST_DEGREE if degree is None else degree
+    most = 2 * least if degree is None else degree
 
     def solids(reach: float) -> tuple[LayeredSolid, ...]:
         scaled = tuple(LayeredSolid.scaled(*one, reach, far, E) for one in layers)

@@ -70,11 +70,9 @@ def gone(pids: list[int], within: float) -> None:
     [(7, 2, "", "3"), (2, 3, "", "1"), (7, 2, "2", "2"), (7, 2, "9", "3"), (7, 2, "0", "1")],
 )
 def test_jobs_share_the_cores_each_has_one_at_least_and_no_more_than_stated(
-    cores, jobs, stated, threads, tmp_path, monkeypatch
+    cores, jobs, stated, threads, tmp_path, monkeypatch, environment
 ):
-    for name in process_pool.THREAD_VARIABLES:
-        monkeypatch.delenv(name, raising=False)
-    monkeypatch.setenv("OMP_NUM_THREADS", stated)
+    environment(**dict.fromkeys(process_pool.THREAD_VARIABLES, stated))
     monkeypatch.setattr(process_pool, "cores", lambda: cores)
     assert run_tasks([task("threads", tmp_path)], jobs=jobs, time_limit=300) == [threads]
 
