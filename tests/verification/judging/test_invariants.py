@@ -10,13 +10,14 @@ from altered_source import Altered
 import fem_reference
 import semianalytic
 from verification.judging.invariant_verdict import decide
-from verification.judging.invariants import check, resolved
+from verification.judging.invariants import check, indenter_gap, resolved
 from verification.judging.invariants.central_differences import Stencil
 from verification.judging.invariants.thickness_limits import thick_shift, thin_shift
 from verification.judging.verdict import Outcome
 from verification.problem.coated_contact import CoatedContact, keywords
 from verification.sources.references import integral_equation
 from verification.sources.references.hertz import Hertz
+from verification.sources.references.hertz_ellipse import pressed_ellipsoid
 from verification.sources.source_registry import solvers
 
 STEEL = (210e9, 0.3)
@@ -243,3 +244,15 @@ def test_invariants_between_solutions_hold_for_both_methods():
     found = resolved(SLIDING, solvers())
     assert len(found) == 10
     assert {row.outcome for row in found} == {Outcome.AGREES}
+
+
+def test_the_load_of_an_exact_ellipse_balances_at_any_ratio_of_its_axes():
+    """Twice as many rings as it had failed one ratio of these sixty, by their quadrature alone."""
+    for ratio in np.linspace(1.05, 8, 60):
+        radii = (16e-3 * ratio, 16e-3)
+        problem = CoatedContact(
+            float(np.prod(radii) ** 0.5), 20.0, (), (210e9, 0.3), indenter=("ellipsoid", radii)
+        )
+        found = indenter_gap.load_balance(pressed_ellipsoid(*radii, 20.0, 210e9, 0.3), "exact", problem)
+        assert found.outcome is Outcome.AGREES
+        assert found.value < 1e-4
