@@ -59,13 +59,14 @@ class Closed:
         What elements miss at the edge cannot be closed, and a pressure of too many terms would follow it.
         Returned with what the last degree moved, see ``moved``.
         """
-        found = self
-        by = found.moved(found.of_degree(found.pressure.degree - chosen.LOWER, height, load, last))
-        while found.pressure.degree + chosen.LOWER <= most:
-            more = found.of_degree(found.pressure.degree + chosen.LOWER, height, load, last)
-            if not more.converged or more.moved(found) > chosen.LESS * by:
+        found, step = self, chosen.LOWER
+        by = found.moved(found.of_degree(found.pressure.degree - step, height, load, last))
+        while found.pressure.degree + step <= most:
+            more = found.of_degree(found.pressure.degree + step, height, load, last)
+            moved = more.moved(found)
+            if not more.converged or moved > chosen.LESS * by:
                 break
-            found, by = more, more.moved(found)
+            found, by = more, moved
         return found, by
 
     def moved(self, other: "Closed") -> float:

@@ -74,7 +74,7 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
-    companion : pressure on the companion's mesh, whose fields are those of one of a lower degree
+    companion : pressure on the companion's mesh of the same degree; its fields have a lower degree
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
@@ -180,9 +180,9 @@ class ShapedContact(PressedSolid):
         Outside 0, or ``beyond`` what it is as far inside: a pressure that is wrong there moves the stress.
         """
         w, tau = self._fine.pressure.polar(*(np.asarray(v) / self._units.length for v in (x, y)))
-        inwards = np.where(w < 1, w, 2 - w if beyond else 0 * w)
-        found = self._changes_inwards(np.stack([np.maximum(inwards, 0), tau], axis=-1))
-        return np.where((w < 1) | ((w < 2) & beyond), found, 0.0)
+        inside = w < (2 if beyond else 1)
+        share = np.where(inside, 1 - np.abs(1 - w), 0.0)
+        return np.where(inside, self._changes_inwards(np.stack([share, tau], axis=-1)), 0.0)
 
     @cached_property
     def _changes_inwards(self) -> RegularGridInterpolator:
