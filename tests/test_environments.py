@@ -12,12 +12,15 @@ import sys
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
+from map_of_heights import write_sdf
 
 from verification.cli import COMMANDS
 
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = [ROOT / "README.md", *sorted((ROOT / "verification" / "manual" / "source").glob("*.md"))]
+SOLVE = ROOT / "verification" / "manual" / "source" / "solve.md"
 LINE = re.compile(r"^(?:\| `|    |\$ )?((?:[^`|\n]*&& *)?(?:\.venv/bin/)?coatcheck [^`|\n]*)", re.MULTILINE)
 EXTRAS = re.compile(r"pip install .*?-e '?\.(?:\[([\w,]+)\])?'?")
 # What takes minutes is run in part; what waits for a person or writes the baseline is not run.
@@ -28,6 +31,8 @@ QUICK = {
     r"completion .*": "completion bash",
 }
 NOT_RUN = ("baseline update", "<")
+# What a line needs beyond ``all``.
+NEEDS = {"surface": "report,surfaces"}
 
 
 def commands() -> list[tuple[str, str]]:
@@ -42,7 +47,7 @@ def commands() -> list[tuple[str, str]]:
             if known and not any(part in words for part in NOT_RUN):
                 for pattern, quick in QUICK.items():
                     words = re.sub(f"^{pattern}", quick, words)
-                found[(extras and extras[1]) or "all", words] = None
+                found[(extras and extras[1]) or NEEDS.get(words.split()[0], "all"), words] = None
     return list(found)
 
 
@@ -59,10 +64,19 @@ def environment(extras: str) -> Path:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Commands of a page use what those before them wrote, and the case file of CONTRIBUTING.md."""
+    """Commands of a page use what those before them wrote, and a reader's own files: those that the pages
+    print, a curve and a map of heights."""
     place = tmp_path_factory.mktemp("newcomer")
-    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
-    (place / "my_coating.toml").write_text(text.partition("```toml\n")[2].partition("```")[0])
+    printed = {"my_coating.toml": (ROOT / "CONTRIBUTING.md", "toml"), "my_coatings.csv": (SOLVE, "text")}
+    for name, (page, kind) in printed.items():
+        text = page.read_text(encoding="utf-8").partition(f"```{kind}\n")[2].partition("```")[0]
+        (place / name).write_text(text)
+    loads = np.linspace(0.5, 5, 10)  # mN; depth by Hertz, of E* = 80 GPa and a radius of 5 um
+    depths = (0.75 * 1e-3 * loads / (80e9 * 5e-6**0.5)) ** (2 / 3) / 1e-9
+    rows = "".join(f"{load},{depth}\n" for load, depth in zip(loads, depths, strict=True))
+    (place / "curve.csv").write_text("load [mN],depth [nm]\n" + rows)
+    x = np.linspace(-200e-6, 200e-6, 128)
+    write_sdf(place / "map.sdf", 20e-9 * np.cos(4e5 * x)[:, None] * np.cos(5e5 * x)[None, :], 400e-6)
     return place
 
 

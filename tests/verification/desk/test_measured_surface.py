@@ -8,6 +8,7 @@ from types import ModuleType, SimpleNamespace
 
 import numpy as np
 import pytest
+from map_of_heights import write_sdf
 from quick_case import coatcheck
 
 from verification.cases.case_file import parse_case
@@ -177,19 +178,7 @@ def test_wrong_words_are_one_message_and_write_nothing(words, said, reader, tmp_
 @pytest.mark.skipif(not importlib.util.find_spec("SurfaceTopography"), reason="extra surfaces")
 @pytest.mark.filterwarnings("ignore")
 def test_a_file_of_iso_25178_is_read_by_surfacetopography(tmp_path):
-    names = ("ManufacID = made", "CreateDate = 010120000000", "ModDate = 010120000000", f"NumPoints = {N}")
-    scales = (f"NumProfiles = {N}", f"Xscale = {L / N!r}", f"Yscale = {L / N!r}", "Zscale = 1e-9")
-    head = (
-        "aISO-1.0",
-        *names,
-        *scales,
-        "Zresolution = -1",
-        "Compression = 0",
-        "DataType = 7",
-        "CheckType = 0",
-    )
-    body = " ".join(f"{h:.9e}" for h in (CAP / 1e-9).T.ravel())
-    (tmp_path / "map.sdf").write_text("\n".join([*head, "*", body, "*", ""]))
+    write_sdf(tmp_path / "map.sdf", CAP, L)
     np.testing.assert_allclose(read_map(tmp_path / "map.sdf").heights, map_of(CAP).heights, atol=1e-12)
     (tmp_path / "no.txt").write_text("this is no map\n")
     with pytest.raises(CaseError, match="does not read it"):
