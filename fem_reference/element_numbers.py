@@ -97,6 +97,9 @@ ARC_SAMPLES = 256  # on half a circle, between which an arc begins or ends
 WEIGHT = 5
 MORE, FIRM = 4, 1e3  # degree of the conditions beyond that of the pressure; weight of the load
 CORRECTING = 160  # of the harmonics, that correct the pressure: 96 leave 1e-3 of it beside pointed ends
+# Length over width, beyond which the triangles on the surface are smaller and more harmonics correct the
+# pressure: 16 : 1 has no contour at rest without.
+SLENDER = 5.0
 LARGEST_MOVE = 0.2  # of the edge in one step
 # Change of the edge on the rough mesh in the last step, and the most elsewhere in a step that was the last.
 EDGE_CLOSE = 1e-4

@@ -248,8 +248,8 @@ def solve_shape(
     began = time.perf_counter()
     check_choice("quality", quality, tuple(chosen.SHAPED_QUALITY))
     usual, default = (chosen.SHAPED_QUALITY[one] for one in (quality, "default"))
-    size, surface = usual[0] if size is None else size, usual[1] if surface is None else surface
-    check_positive(radius=radius, load=load, far=far, size=size, surface=surface, first=first)
+    size = usual[0] if size is None else size
+    check_positive(radius=radius, load=load, far=far, size=size, first=first)
     check_materials(coatings, substrate, friction)
     check_choice("order", order, (2, 3, 4))
     if ball is not None:
@@ -261,6 +261,12 @@ def solve_shape(
     half = load / 2 if shape.centre else load
     waves = max(shape.fold, 2)
     axes = hertz_axes(shape.curvatures, half, compliance)
+    # the width of a long contact is a small share of its extent, and of the circle around its end
+    slender = max(1.0, max(axes) / min(axes) / chosen.SLENDER)
+    surface = usual[1] / slender**0.5 if surface is None else surface
+    check_positive(surface=surface)
+    rough_grid = replace(ROUGH, surface=ROUGH.surface / slender, harmonics=int(ROUGH.harmonics * slender))
+    correcting = int(chosen.CORRECTING * slender)
     begin = StarPressure.of_ellipse(
         shape.centre, (first * axes[0], first * axes[1]), load / E, shape.fold, chosen.ROUGH_DEGREE
     )
@@ -281,7 +287,7 @@ def solve_shape(
         start = begin.scaled(reach)
         # vertices at the radii of the edge on y = 0 and of its sides, none right beside another
         radii = sorted({round(abs(x), 4) for x in (*start.edges, start.extents[1])})
-        pairs = zip(radii, [0.0, *radii], strict=False) if grid is not ROUGH else ()
+        pairs = zip(radii, [0.0, *radii], strict=False) if grid is not rough_grid else ()
         apart = tuple(r for r, before in pairs if r - before > grid.surface / 10)
         bodies = solids(reach)
         stacks = tuple(one.thicknesses for one in bodies)
@@ -300,11 +306,11 @@ def solve_shape(
         return closed(compliances, start, *arguments(reach, grid), enough)
 
     def arguments(reach: float, grid: ShapedGrid) -> tuple[Height, float, int]:
-        return shape.scaled(reach), load / (E * reach**2), min(chosen.CORRECTING, grid.harmonics)
+        return shape.scaled(reach), load / (E * reach**2), min(correcting, grid.harmonics)
 
     for _ in range(chosen.MOST_STEPS):
         reach = ROUGH.margin * begin.reach[1]
-        rough = on_mesh(reach, ROUGH, begin, chosen.EDGE_CLOSE)
+        rough = on_mesh(reach, rough_grid, begin, chosen.EDGE_CLOSE)
         begin = rough.pressure.scaled(1 / reach)
         if rough.converged:
             break

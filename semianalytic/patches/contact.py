@@ -301,7 +301,12 @@ def _is_solved(state: _State, problem: Problem) -> bool:
 
 
 def _within_tolerance(state: _State, problem: Problem) -> bool:
-    return state.admissible and state.residual <= problem.tolerance
+    """Whether gap and penetration are within the tolerance, and a further step changes p by no more than
+    ``LEFT`` times that share of its peak: the shortest waves of p hardly move the gap."""
+    if not (state.admissible and state.residual <= problem.tolerance):
+        return False
+    most = numbers.LEFT * problem.tolerance * float(np.max(state.p))
+    return state.iterations >= numbers.PRECONDITIONED_ITERATIONS or float(np.max(np.abs(state.z))) <= most
 
 
 def _update_set(state: _State, problem: Problem) -> bool:
