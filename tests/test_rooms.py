@@ -23,7 +23,7 @@ MODULES = sorted(
 )
 MOST_IN_A_FOLDER = 13
 MOST_LINES = 450
-MOST_NUMBERS, PRESENT_NUMBERS = 90, 185  # named in the modules of both methods: asked for, and reached
+MOST_NUMBERS, PRESENT_NUMBERS = 90, 187  # named in the modules of both methods: asked for, and reached
 # Beginnings of a line that needs the one before it.
 LEANING = ("The same ", "As ", "Of ", "That of ", "What ", "Where ")
 # A room imports from those before it; rooms on one floor do not import each other. The manual draws them.
