@@ -1,79 +1,122 @@
-"""Figures of a report computed again from report.json, by the standard library alone: python FILE FOLDER."""
+"""Numbers that a report displays, computed again from its report.json: python FILE FOLDER.
+
+Each number of a row of a table has to be one that its record holds or gives, rounded to the digits displayed
+and in their order; each number of a text, one of those of its page. The standard library is enough.
+"""
 
 import json
 import re
 import sys
 from html import unescape
+from itertools import chain, repeat
 from pathlib import Path
 
-DECIDING = ("bare", "coated", "invariants", "studies")  # columns of the checks that count for a method
+from recomputed_pages import case_page, first_page, run_pages
+from recomputed_values import Record, group
+
+NUMBER = re.compile(
+    r"(?<![\w.])([-+]?)(\d+\.?\d*)(?:e([-+]?\d+))?(?:\((\d+)\))?(?![\w(])"
+    r"(?:\s?(%|([fpnµmkMGT]?)(?:Pa|N/m|[NmsB])(?!\w)))?"
+)
+PREFIX = {name: 1e3**k for k, name in enumerate("fpnµm-kMGT", -5)}
+BLOCK = r"<(?:p|li|div|dt|dd|h\d|figcaption|summary|pre|span|figure|section|small|nav|dl)\b[^>]*>"
+# What is read as a table of one row, by the name of that table: what its head and its cell look like.
+SINGLE = {
+    "figure": r'<figcaption>(?P<cell>[^\n]*)</figcaption>\s*<svg[^>]* (?P<head>data-q.*? data-line="[^"]*")',
+    "fact": "<div><dt>(?P<head>.*?)</dt><dd>(?P<cell>.*?)</dd></div>",
+    "file": "(?P<head>)<pre[^>]*>(?P<cell>.*?)</pre>",
+}
 
 
 def differing(folder):
-    """Messages on figures of report.html that are not those of report.json."""
+    """Messages on numbers of report.html that do not follow from report.json."""
     page, data = ((folder / f"report.{kind}").read_text(encoding="utf-8") for kind in ("html", "json"))
-    found, data = dict(shown(page)), json.loads(data)
-    for name, text in expected(data, data["evidence"]):
-        if text not in found.get(name, "nothing"):
-            yield f"{name}: {found.get(name, 'nothing')!r}, where report.json gives {text!r}"
+    data = json.loads(data, object_hook=Record)
+    cases = {f"case-{case.name.replace('_', '-')}": case for case in data.cases}
+    whole = rules_of([*first_page(data), *run_pages(data)])
+    for name, body in pages(page):
+        rules = rules_of(case_page(data, cases[name])) if name in cases else whole
+        texts = {*flat(rules.get(cases[name].name if name in cases else name, ()))}
+        for key, rows in tables(body):
+            found = rules.get(key, [repeat(texts)])
+            pool = found.pop(0) if found[1:] else found[0]
+            rest = iter(pool)
+            for row in rows:
+                head = plain(row[0])
+                numbers_of_row = pool.get(head, ()) if isinstance(pool, dict) else next(rest, ())
+                yield from missing(f"{name}, {key}, {head}", " | ".join(row), numbers_of_row)
+        for block in re.split(BLOCK, re.sub(r"<table.*?</table>", "", body, flags=re.DOTALL)):
+            yield from missing(name, block, texts)
 
 
-def shown(page):
-    """Name and text of every row of the first page, and its headline, formulas in plain text."""
-    first = page.partition('id="first"')[2].partition('class="contents"')[0]
-    cells = r'<th scope="row">(.*?)</th><td[^>]*>(.*?)</td>'
-    for name, text in [("", re.search(r"<h1>(.*?)</h1>", first)[1]), *re.findall(cells, first, re.DOTALL)]:
-        yield tuple(unescape(re.sub("<[^>]*>", "", part)).replace("·10−", "e-") for part in (name, text))
+def rules_of(pairs):
+    """Tables of each name, the last of which serves for all that follow."""
+    return {name: [rows for _, rows in of] for name, of in group(pairs, lambda pair: pair[0]).items()}
 
 
-def expected(data, evidence):
-    """Name of a row with a text that it has to hold."""
-    cases = data["cases"]
-    verdicts = [(case, one["claim"], one["verdict"]) for case in cases for one in case["verdicts"]]
-    yield "", f"{len(verdicts)} comparisons"
-    gaps = [gap(case, claim, verdict) for case, claim, verdict in verdicts]
-    for name, alike in (("without a common equation", False), ("with a common equation, coded twice", True)):
-        coded = {"semianalytic", "integral_equation"}
-        of = [g for g, (_, c, _) in zip(gaps, verdicts, strict=True) if (set(c["between"]) == coded) is alike]
-        yield name, f"{max(of):.1e}".replace("e-0", "e-")
-    laws = [one["outcome"] == "AGREES" for case in cases for one in case["invariants"]]
-    yield "laws that every solution obeys", share(laws)
-    yield "self-tests passed", share([test["passed"] for test in evidence["self_tests"]])
-    alarms = evidence["alarms"]
-    wrong = len({one["case"] for one in alarms["alarms"] if one["outcome"] != "INCONCLUSIVE"})
-    yield "random problems with a false alarm", f"{wrong} of {alarms['problems']}"
-    for place, name in (("semianalytic", "semi-analytical method"), ("fem_reference", "finite elements")):
-        rows = [row for row in evidence["faults"]["rows"] if row["where"] == place and not row["failure"]]
-        seen = sum(map(noticed, rows))
-        real = len(rows) - sum(row["equivalent"] and not noticed(row) for row in rows)
-        yield f"faults planted in the {name} noticed", f"{seen} of {real}"
-    harness = [row["catch"] for row in evidence["faults"]["rows"] if row["where"] == "harness"]
-    caught = sum(catch in ("caught", "inconclusive", "baseline") for catch in harness)
-    yield "faults planted in the harness noticed", f"{caught} of {len(harness)}"
-    costs = [cost for model in evidence["models"].values() for cost in model["costs"]]
-    for name in {cost["assumption"] for cost in costs}:
-        size = max(abs(c["change"]) + c["uncertainty"] for c in costs if c["assumption"] == name)
-        yield name, f"{100 * size:.2g} %" if size >= 1e-6 else "less than 0.0001 %"
+def pages(page):
+    """Name and content of each page without its drawings; the caption of a figure becomes a row."""
+    page = re.sub(r"<(style|script|template)\b.*?</\1>", "", page, flags=re.DOTALL)
+    for key, like in SINGLE.items():
+        row = rf"<table><th>{key}</th><tbody><tr><th>\g<head></th><td>\g<cell></td></tr></tbody></table>"
+        page = re.sub(like, row + "<svg" * (key == "figure"), page, flags=re.DOTALL)
+    page = re.sub(r"<svg\b.*?</svg>", "", page, flags=re.DOTALL)
+    found = re.split(r'<(?:section|article) class="page[^"]*" id="([^"]+)">', page)
+    return zip(found[1::2], found[2::2], strict=True)
 
 
-def gap(case, claim, verdict):
-    """The largest difference of two profiles of a comparison without an edge zone, over its scale."""
-    by = {
-        p["source"]: p
-        for p in case["profiles"]
-        if (p["quantity"], p["line"]) == (claim["quantity"], claim["line"])
-    }
-    one, other = (by[source]["value"] for source in claim["between"])
-    return max(abs(a - b) for a, b in zip(one, other, strict=True)) / verdict["judged"]["scale"]
+def tables(body):
+    """First two heads and the rows of each table; a cell is followed by the unit of its column."""
+    for table in re.findall(r"<table.*?</table>", body, re.DOTALL):
+        head, _, rest = table.rpartition("<tbody>")
+        heads = [plain(one) for one in re.findall(r'<th(?: scope="col")?>(.*?)</th>', head)]
+        units = [one.partition("[")[2].strip("]") for one in heads]
+        rows = []
+        for row in re.findall(r"<tr\b.*?</tr>", rest, re.DOTALL):
+            of = repeat("") if re.match('<tr class="(gap|bound)', row) else chain(units, repeat(""))
+            cells = re.findall(r"<t[hd]\b[^>]*>(.*?)</t[hd]>", row, re.DOTALL)
+            rows.append([f"{cell} {unit}".strip() for cell, unit in zip(cells, of, strict=False)])
+        yield "numbers" if 'class="numbers"' in table else "|".join(heads[:2]), rows
 
 
-def noticed(row):
-    tallies = [tally for name, tally in row["columns"].items() if name.startswith(DECIDING)]
-    return any(tally["disagree"] or tally["inconclusive"] for tally in tallies)
+def missing(name, text, pool):
+    """A message for each number of a text that is none of a pool; those of a list are in its order."""
+    found, at = [*numbers(text)], 0
+    pool, ordered = [*flat(pool)] if found else [], isinstance(pool, list)
+    for value, half in found:
+        places = (k for k in range(at, len(pool)) if abs(value - pool[k]) <= half * (1 + 1e-6))
+        if (place := next(places, None)) is None:
+            yield f"{name}: {value:g} in {plain(text)[:90]!r}"
+        elif ordered:
+            at = place + 1
 
 
-def share(held):
-    return f"all {len(held)}" if all(held) else f"{sum(held)} of {len(held)}"
+def flat(item):
+    """Every number of a record, those of its texts too."""
+    if isinstance(item, str):
+        yield from (value for value, _ in numbers(item))
+    elif isinstance(item, int | float):
+        yield item
+    elif item is not None:
+        yield from chain.from_iterable(map(flat, item.values() if isinstance(item, dict) else item))
+
+
+def numbers(text):
+    """Value of each number of a text in SI units, with half of its last digit."""
+    for sign, digits, power, last, unit, prefix in NUMBER.findall(plain(text)):
+        factor = 0.01 if unit == "%" else PREFIX.get(prefix, 1.0)
+        step = factor * 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))
+        yield float(f"{sign}{digits}e{power or 0}") * factor, step / 2
+        if last:
+            yield int(last) * step, step / 2
+
+
+def plain(text):
+    """Text of a piece of the page, or of a string of the record, with powers of ten as e-5, times in s."""
+    text = text.replace("·10<sup>", "e").replace("10<sup>", "1e").replace("<small", " <small")
+    text = unescape(re.sub(r"<[^>]*>", "", text)).replace("−", "-").strip()
+    text = re.sub(r"(\d)T(?=\d\d:)", r"\1 ", text.replace("< 0.01 %", "").replace("< 0.", "< 9e99 "))
+    return re.sub(r"(\d+) min (\d\d) s", lambda m: f"{60 * int(m[1]) + int(m[2])} s", text)
 
 
 if __name__ == "__main__":

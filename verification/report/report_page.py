@@ -32,6 +32,7 @@ from verification.running.case_result import SCHEMA, to_json
 from verification.running.checked_files import write_together
 from verification.running.json_records import encode
 from verification.validation import validation_page
+from verification.validation.measured_modulus import data_sets, described
 
 # Of more cases each page is compressed until it is opened: a report of hundreds stays small.
 MOST_UNPACKED = 60
@@ -113,10 +114,17 @@ def write_report(material: ReportMaterial, folder: Path, junit: str) -> Path:
 def report_json(material: ReportMaterial) -> str:
     """Everything the report is made from as strict JSON of schema ``coatcheck-report/1``.
 
-    ``evidence`` is all that ``coatcheck report`` needs beside the results; ``accuracy`` and ``baseline``
-    are for other readers.
+    ``evidence`` is all that ``coatcheck report`` needs beside the results; ``accuracy``, ``baseline`` and
+    ``shown``, what the page shows besides, are for other readers.
     """
     study, baseline = material.evidence.accuracy, material.evidence.baseline
+    radii = {one.name: one.a[one.admitted].tolist() for one in data_sets()}
+    shown = {
+        "planes": {name: encode(plane) for name, plane in material.planes.items()},
+        "studies": [encode(one) for one in study.verdicts] if study else [],
+        "guests": guests_section.examined(),
+        "measurements": described() | {"radii": radii},
+    }
     data = {
         "schema": SCHEMA,
         "run": {**vars(material.info)},
@@ -124,5 +132,6 @@ def report_json(material: ReportMaterial) -> str:
         "accuracy": None if study is None else accuracy_study.to_json(study),
         "baseline": None if baseline is None else regression_json(baseline),
         "evidence": encode(material.evidence),
+        "shown": shown,
     }
     return json.dumps(data, allow_nan=False, ensure_ascii=True, separators=(",", ":")) + "\n"
