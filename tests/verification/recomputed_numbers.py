@@ -114,7 +114,7 @@ def numbers(text):
 def plain(text):
     """Text of a piece of the page, or of a string of the record, with powers of ten as e-5, times in s."""
     text = text.replace("·10<sup>", "e").replace("10<sup>", "1e").replace("<small", " <small")
-    text = unescape(re.sub(r"<[^>]*>", "", text)).replace("−", "-").strip()
+    text = unescape(re.sub(r"<[^>]*>", "", text)).replace("−", "-").replace("\N{NO-BREAK SPACE}", " ").strip()
     text = re.sub(r"(\d)T(?=\d\d:)", r"\1 ", text.replace("< 0.01 %", "").replace("< 0.", "< 9e99 "))
     return re.sub(r"(\d+) min (\d\d) s", lambda m: f"{60 * int(m[1]) + int(m[2])} s", text)
 

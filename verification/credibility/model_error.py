@@ -111,8 +111,12 @@ class ModelError:
 
     @property
     def sentences(self) -> str:
-        """The message with its notes."""
-        return " ".join(f"{line[0].upper()}{line[1:]}." for line in (self.message(), *self.notes))
+        """The message with its notes, those that begin alike in one sentence."""
+        found: dict[str, list[str]] = {}
+        for start, _, rest in (note.partition(": ") for note in self.notes):
+            found.setdefault(start, []).append(rest)
+        notes = (f"{start}: {'; '.join(rests)}" for start, rests in found.items())
+        return " ".join(f"{line[0].upper()}{line[1:]}." for line in (self.message(), *notes))
 
     @property
     def notes(self) -> tuple[str, ...]:

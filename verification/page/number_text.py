@@ -16,7 +16,7 @@ def engineering(value: Any, unit: str, digits: int = 4) -> str:
     if number is None:
         return f"{value} {unit}"
     factor, prefix = _prefix(number)
-    return f"{_minus(format(number / factor, f'.{digits}g'))} {prefix}{unit}"
+    return f"{plain(number / factor, digits)} {prefix}{unit}"
 
 
 def aligned(values: Sequence[tuple[Any, Any] | None], unit: str) -> tuple[str, list[Markup | str]]:
@@ -69,9 +69,12 @@ def scientific(value: Any, digits: int = 2, sign: bool = False) -> str:
 
 
 def plain(value: Any, digits: int = 4) -> str:
-    """A ratio or a count with ``digits`` significant digits."""
+    """A ratio or a count with ``digits`` significant digits, all those before its point: 154, not 1.5e2."""
     number = _number(value)
-    return str(value) if number is None else _minus(format(number, f".{digits}g"))
+    if number is None:
+        return str(value)
+    text = format(number + 0.0, f".{digits}g")
+    return _minus(f"{number:.0f}" if "e+0" in text else text)
 
 
 def seconds(value: Any) -> str:

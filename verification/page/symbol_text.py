@@ -29,6 +29,7 @@ _GREEK = {
     "beta": "β",
     "kappa": "κ",
     "epsilon": "ε",
+    "phi": "φ",
 }
 
 
@@ -47,6 +48,8 @@ def _component(symbol: str, index: str) -> list[Piece]:
 def _power_of_ten(mantissa: str, exponent: str) -> list[Piece]:
     exponent = str(int(exponent.replace("−", "-"))).replace("-", "−")
     mantissa = mantissa.replace("-", "−")
+    if exponent == "0":
+        return [Piece(mantissa)]
     times = mantissa[:-1] if mantissa in ("1", "+1", "−1") else f"{mantissa}·"
     return [Piece(f"{times}10"), Piece(exponent, level=1)]
 
@@ -73,8 +76,9 @@ _RULES: tuple[tuple[str, Callable[..., list[Piece]]], ...] = (
     (r"(?<!\w)(E|nu|h)_?([12s])(?!\w)", _indexed),
     (r"(?<!\w)(p)_?(0)(?!\w)", _indexed),
     (r"(?<!\w)(U)_([A-Z])(?!\w)", _component),
-    (r"(?<!\w)(delta|nu|kappa)(?!\w)", _letter),
-    (r"(?<!\w)([hfpERUWxyzsaq])( (?:=|/|<|>|−|≤) )", _related),
+    (r"(?<!\w)(u)_(val|num|input|D|random|common)(?!\w)", _indexed),
+    (r"(?<!\w)(delta|nu|kappa|sigma|eps|phi)(?!\w)", _letter),
+    (r"(?<!\w)([hfpERUWxyzsaqN])( (?:=|/|<|>|−|≤) )", _related),
     (r"(?<!\w)(x)(?= of max )", _letter),
     (r"^([aEhfpRWxz])(?= \[|$)", _letter),
     (r"(?:(?<=radius )|(?<=load )|(?<=leaves )|(?<=friction )|(?<=pressure ))([RaWfqp])(?!\w)", _letter),

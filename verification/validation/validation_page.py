@@ -1,15 +1,13 @@
 """Pages about the comparison with measurements: a section of the report and a page of its own."""
 
-import io
-from base64 import b64encode
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
 from markupsafe import Markup
-from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 
+from verification.page.figures import ROLES, inline, written
 from verification.page.html_page import render_sections
 from verification.page.page_parts import Gallery, Panel, Part, Section, Table, number, row, words
 from verification.problem.array_types import Array
@@ -196,20 +194,24 @@ def _drawn(one: Validated) -> Markup:
     a = np.geomspace(0.8 * data.a.min(), 1.2 * data.a.max(), 60)
     exact = np.array([exact_modulus(radius, solid) for radius in a]) / 1e9
     band = np.interp(a, data.a[data.admitted], one.u_input)
-    with mpl.rc_context({"font.size": 8, "svg.hashsalt": "coatcheck", "font.family": "DejaVu Sans"}):
+    with mpl.rc_context({"font.size": 8}):
         figure = Figure(figsize=(6.4, 3.6), layout="constrained")
         axes = figure.subplots()
-        axes.fill_between(a / t, exact * (1 - band), exact * (1 + band), color="#0072B2", alpha=0.25, lw=0)
-        axes.plot(a / t, exact, color="#0072B2", label="layers, with u_input")
+        axes.fill_between(
+            a / t, exact * (1 - band), exact * (1 + band), color=ROLES["semi"], alpha=0.25, lw=0
+        )
+        axes.plot(a / t, exact, color=ROLES["semi"], label=r"layers, with $u_\mathrm{input}$")
         for (name, moduli), style in zip(_of_formulas(one, a).items(), ("--", "-."), strict=True):
-            axes.plot(a / t, moduli / 1e9, color="#D55E00", ls=style, lw=0.9, label=name)
+            axes.plot(a / t, moduli / 1e9, color=ROLES["fem"], ls=style, lw=0.9, label=name)
         for value, name in ((contact_modulus(*solid), "bare film"), (base, "bare substrate")):
-            axes.axhline(value / 1e9, color="0.5", lw=0.8, ls=":")
-            axes.annotate(name, (1, value / 1e9), ha="right", va="bottom", xycoords=("axes fraction", "data"))
+            axes.axhline(value / 1e9, color=ROLES["zone"], lw=0.8, ls=":")
+            axes.annotate(
+                name, (0.75, value / 1e9), ha="right", va="bottom", xycoords=("axes fraction", "data")
+            )
         u_D = np.hypot(np.hypot(data.u_random, data.u_radius), data.u_common)
         for rows, colour, label in (
-            (data.admitted, "k", "measured, u_D"),
-            (~data.admitted, "0.6", "not compared"),
+            (data.admitted, ROLES["ink"], r"measured, $u_\mathrm{D}$"),
+            (~data.admitted, ROLES["zone"], "not compared"),
         ):
             bars = 1e-9 * (u_D * data.D)[rows]
             axes.errorbar(
@@ -217,16 +219,11 @@ def _drawn(one: Validated) -> Markup:
             )
         inside = data.a[data.admitted] / t
         for low, high, why in ((a[0] / t, inside.min(), "tip"), (inside.max(), a[-1] / t, "plastic imprint")):
-            axes.axvspan(low, high, color="0.92", lw=0, zorder=0)
+            axes.axvspan(low, high, color=ROLES["zone"], alpha=0.13, lw=0, zorder=0)
             axes.annotate(why, (np.sqrt(low * high), 0.02), xycoords=("data", "axes fraction"), ha="center")
         axes.set(xscale="log", xlim=(a[0] / t, a[-1] / t), xlabel="a / t", ylabel="S / (2a) [GPa]")
         axes.legend(frameon=False, loc="upper left", ncols=2)
-        out = io.BytesIO()
-        FigureCanvasSVG(figure).print_figure(out, format="svg", metadata={"Date": None})
-    image = b64encode(out.getvalue()).decode()
-    return Markup('<img class="print" alt="{}" src="data:image/svg+xml;base64,{}">').format(
-        answer(one), image
-    )
+        return inline(written(figure), answer(one), css="print")
 
 
 def page(record: ValidationRecord) -> str:

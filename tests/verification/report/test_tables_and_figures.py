@@ -13,7 +13,7 @@ from synthetic_results import STEEL, contact, result_of
 
 from verification.judging.verdict import Outcome
 from verification.page.figures import Sheet, line
-from verification.page.number_text import aligned
+from verification.page.number_text import aligned, engineering, plain
 from verification.page.plots import Plot, Trail, panels
 from verification.page.source_labels import OUTCOMES, pair_style, source_style
 from verification.page.symbol_text import drawn, typeset, unicode
@@ -44,9 +44,15 @@ def test_numbers_of_a_column_share_their_unit_and_their_decimal_point():
     assert [re.sub("<[^>]*>", "", text) for text in (texts[0], texts[2])] == ["1.27261(48)", "12.50(10)"]
 
 
+def test_numbers_of_more_digits_than_asked_for_have_no_power_of_ten():
+    assert engineering(2.647e-10, "m", 2) == "265 pm"
+    assert [plain(value, 2) for value in (154.0, -0.0, 0.0123456)] == ["154", "0", "0.012"]
+
+
 def test_symbols_are_typeset_and_strangers_words_escaped():
     assert typeset("sigma_xx") == "<i>σ</i><sub><i>xx</i></sub>"
     assert typeset("3.1e-5 of a_h") == "3.1·10<sup>−5</sup> of <i>a</i><sub>H</sub>"
+    assert typeset("residual 0.0e+00, u_val") == "residual 0.0, <i>u</i><sub>val</sub>"
     assert typeset("<b> my_sigma_xx") == "&lt;b&gt; my_sigma_xx"
     assert unicode("E1/E2 = 2, dW/d delta, 1e-3") == "E_1/E_2 = 2, dW/dδ, 10⁻³"
     assert "<i>a</i>, then" in typeset("stress over a, then")

@@ -26,7 +26,7 @@ from verification.page.page_parts import (
     words,
 )
 from verification.page.plots import draw_histogram
-from verification.page.source_labels import pair_label, source_label
+from verification.page.source_labels import pair_label, source_label, symbol_of
 from verification.report.report_material import Evidence, ReportMaterial
 from verification.report.report_words import stated
 from verification.report.tables.case_lookup import layers, scale
@@ -223,12 +223,12 @@ def _alarms(evidence: Evidence) -> list[Part]:
     ]
     histograms = Gallery((), panels, stated("ratios")) if panels else None
     table = table_of(
-        f"Verdicts of clean problems that are not AGREES, at most {MOST} of {len(record.alarms)}.",
+        f"All {len(record.alarms)}, or the first {MOST}.",
         record.alarms[:MOST],
         [
             ("problem", lambda alarm: Cell(alarm.title, note=alarm.case, css="words")),
             ("verdict", lambda alarm: outcome_cell(alarm.outcome)),
-            ("quantity", lambda alarm: alarm.quantity),
+            ("quantity", lambda alarm: symbol_of(alarm.quantity)),
             ("line", lambda alarm: alarm.line),
             ("between", lambda alarm: " – ".join(map(source_label, alarm.between))),
             ("reason", lambda alarm: words(alarm.reason)),

@@ -118,4 +118,4 @@ def _part(one: AssumptionMap) -> Part:
 
 
 def _percent(value: float) -> str:
-    return f"{100 * value:.2g} %".replace("-", "−")
+    return f"{plain(100 * value, 2)} %"

@@ -119,13 +119,14 @@ def _largest(material: ReportMaterial) -> list[str]:
     texts = []
     if away:
         gap, claim, title = max(away, key=lambda one: one[0])
-        texts.append(
-            f"The largest difference is {scientific(gap)} {_scale(claim)}: {_place(claim)}, {title}."
-        )
+        where = " away from edges that are not round" if edge else ""
+        size = f"{scientific(gap)} {_scale(claim)}"
+        texts.append(f"The largest difference{where} is {size}: {_place(claim)}, {title}.")
     if edge:
         gap, claim, _ = max(edge, key=lambda one: one[0])
-        text = f"{scientific(gap)}, cap {claim.cap:g}"
-        texts.append(f"Beside edges not round, in {len(edge)} comparisons: {text}.")
+        texts.append(
+            f"Beside them it is {scientific(gap)}, in {len(edge)} comparisons with cap {claim.cap:g}."
+        )
     gaps = [
         (apart, result.name)
         for result in material.contacts
@@ -344,7 +345,7 @@ def worth(material: ReportMaterial) -> list[Worth]:
     if alarms := evidence.alarms:
         wrong = len({one.case for one in alarms.false_alarms})
         bound = betaincinv(wrong + 1, alarms.problems - wrong, 0.95) if alarms.problems else 1.0
-        note = f"seed {alarms.seed}; below {plain(100 * bound, 2)} % at 95 %; "
+        note = f"seed {alarms.seed}; rate below {plain(100 * bound, 2)} % (95 % sure); "
         recorded("random problems with a false alarm", wrong, alarms.problems, "#alarms", alarms, note)
     if faults := evidence.faults:
         for place, rows in by_place(faults).items():

@@ -249,7 +249,7 @@ def budget_table(result: CaseResult) -> Table:
                 Cell(scientific(value / size if size else None), value),
                 Cell("◀ dominates" if dominant else "", css="dominant"),
             ]
-            rows.append(row(source_label(source.source), quantity, *cells))
+            rows.append(row(source_label(source.source), symbol_of(quantity), *cells))
     return Table(stated("budget"), ["source", "quantity", "parameter", "uncertainty", "relative", ""], rows)
 
 
@@ -260,12 +260,12 @@ def diagnostics_table(sources: Iterable[SourceResult]) -> Table:
         for source in sources
         for name, value in source.diagnostics.items()
     ]
-    return Table("Diagnostics reported by each source.", ["source", "diagnostic", "value"], rows)
+    return Table("Diagnostics reported by each source, in SI units.", ["source", "diagnostic", "value"], rows)
 
 
 def _shown(value: Any) -> str:
     if isinstance(value, float):
-        return f"{value:.4g}"
+        return plain(value)
     if isinstance(value, list | tuple):
         if len(value) > 6:
             return f"{len(value)} values, first {_shown(value[0])}, last {_shown(value[-1])}"
