@@ -12,7 +12,7 @@ from itertools import chain, repeat
 from pathlib import Path
 
 from recomputed_pages import case_page, first_page, run_pages
-from recomputed_values import Record, group
+from recomputed_values import Record, compared, group
 
 NUMBER = re.compile(
     r"(?<![\w.])([-+]?)(\d+\.?\d*)(?:e([-+]?\d+))?(?:\((\d+)\))?(?![\w(])"
@@ -33,6 +33,7 @@ def differing(folder):
     page, data = ((folder / f"report.{kind}").read_text(encoding="utf-8") for kind in ("html", "json"))
     data = json.loads(data, object_hook=Record)
     cases = {f"case-{case.name.replace('_', '-')}": case for case in data.cases}
+    yield from by_script(page, cases)
     whole = rules_of([*first_page(data), *run_pages(data)])
     for name, body in pages(page):
         rules = rules_of(case_page(data, cases[name])) if name in cases else whole
@@ -47,6 +48,15 @@ def differing(folder):
                 yield from missing(f"{name}, {key}, {head}", " | ".join(row), numbers_of_row)
         for block in re.split(BLOCK, re.sub(r"<table.*?</table>", "", body, flags=re.DOTALL)):
             yield from missing(name, block, texts)
+
+
+def by_script(page, cases):
+    """Messages on the numbers from which the script of the page writes its tables of comparisons."""
+    found = re.search(r'<template id="data">(.*?)</template>', page, re.DOTALL)[1]
+    for name, rows in ((name, of["rows"]) for name, of in json.loads(unescape(found))["cases"].items()):
+        expected = sorted([one.cap, one.uncertainty, one.difference] for one in compared(cases[name]))
+        for (*_, difference, U, cap, _), numbers_of_row in zip(rows, expected, strict=True):
+            yield from missing(f"{name}, script", f"{cap:.2e} {U:.2e} {difference:.2e}", numbers_of_row)
 
 
 def rules_of(pairs):

@@ -67,7 +67,7 @@ def _related(letter: str, relation: str) -> list[Piece]:
 _RULES: tuple[tuple[str, Callable[..., list[Piece]]], ...] = (
     (r"(?<![\w.])([+−-]?\d+(?:\.\d+)?)e([+−-]?\d+)(?!\w)", _power_of_ten),
     (r"(?<!\w)(sigma|eps)_([xyzk]{2})(?!\w)", _component),
-    (r"(?<!\w)(u)_([xyz])(?!\w)", _component),
+    (r"(?<!\w)([uR])_([xyz])(?!\w)", _component),
     (r"(?<!\w)(a|p|S|delta)_h(?!\w)", lambda symbol: _indexed(symbol, "H")),
     (r"(?<!\w)tau_max(?!\w)", lambda: _indexed("tau", "max")),
     (r"(?<!\w)von_mises_max(?!\w)", lambda: _indexed("sigma", "vM")),

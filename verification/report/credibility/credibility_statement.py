@@ -222,8 +222,9 @@ def _alarms(evidence: Evidence) -> list[Part]:
         if one.values
     ]
     histograms = Gallery((), panels, stated("ratios")) if panels else None
+    count = len(record.alarms)
     table = table_of(
-        f"All {len(record.alarms)}, or the first {MOST}.",
+        f"The first {MOST} of {count}." if count > MOST else f"All {count}.",
         record.alarms[:MOST],
         [
             ("problem", lambda alarm: Cell(alarm.title, note=alarm.case, css="words")),

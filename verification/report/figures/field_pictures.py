@@ -30,7 +30,7 @@ from verification.report.report_words import stated
 from verification.sampling.stress_plane import StressPlane
 from verification.sources.source_registry import METHODS
 
-LEFT, TOP, RIGHT, BOTTOM = 46.0, 12.0, 52.0, 32.0  # margins around the raster, in units of the drawing
+LEFT, TOP, RIGHT, BOTTOM = 46.0, 12.0, 56.0, 32.0  # margins around the raster, in units of the drawing
 WIDTH = 250.0  # of the raster
 PIXELS = 200  # along x
 COLOURS = 96

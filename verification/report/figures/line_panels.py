@@ -57,15 +57,18 @@ def case_figures(result: CaseResult) -> dict[str, Any] | None:
     if not places:
         return None
     pairs = dict.fromkeys(pair for quantity, line in places for pair in _pairs(result, line, quantity))
-    sources = sources_with_profiles(result)
-    base = next((s for s in sources if source_style(s).width > 3), None)
+    shown_by = {profile.source for profile in result.profiles if (profile.quantity, profile.line) in places}
+    sources = [source for source in sources_with_profiles(result) if source in shown_by]
+    base = max(sources, key=lambda source: source_style(source).width)
     shown = [(claim, verdict) for claim, verdict in result.verdicts if (claim.quantity, claim.line) in places]
     together = all(verdict.outcome is Outcome.AGREES for _, verdict in shown)
     return {
         "panels": [_panel(result, line, quantity) for quantity, line in places],
         "curves": [(swatch(source_style(s), marked=s != base), source_label(s)) for s in sources],
         "differences": [(swatch(pair_style(pair)), pair_label(pair)) for pair in pairs],
-        "caption": stated("panels", together=together, edge=any(claim.edge for claim, _ in shown)),
+        "caption": stated(
+            "panels", base=source_label(base), together=together, edge=any(claim.edge for claim, _ in shown)
+        ),
     }
 
 
