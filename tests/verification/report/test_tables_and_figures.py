@@ -30,6 +30,7 @@ from verification.report.tables.case_tables import (
     failing_table,
 )
 from verification.report.tables.line_csv import line_csv
+from verification.running.case_result import describe
 from verification.sources.source_record import Style
 
 COATED = contact((2 * STEEL[0], 0.3, 1.0))
@@ -105,6 +106,13 @@ def test_an_indenter_is_not_called_a_sphere(indenter, shown):
     assert dict(facts(problem))["indenter"] == shown
     assert "sphere radius R" not in dict(facts(problem))
     assert "rigid sphere" not in sketch(problem, None)
+
+
+@pytest.mark.parametrize("count", [1, 5])
+def test_the_sketch_holds_the_label_of_every_layer(count):
+    drawn = sketch(describe(contact(*[(2 * STEEL[0], 0.3, 0.1)] * count)), None)
+    lowest = max(float(y) for y in re.findall(r'<text x="[^"]*" y="([^"]*)"', drawn)) + 13
+    assert lowest < float(re.search(r'viewBox="0 0 400 ([^"]*)"', drawn)[1])
 
 
 def test_failing_verdicts_lead_their_table_and_every_quantity_has_a_row():

@@ -53,6 +53,7 @@ def sketch(problem: Mapping[str, Any], a: float | None) -> Markup:
     note = "thin layers drawn thicker" if stretched else "depth and width to one scale"
     content = {
         "label": f"Sphere on {len(found) - 1} coating(s) on a substrate, {note}.",
+        "tall": max(HEIGHT, at),  # room for the label of each of many layers
         "surface": SURFACE,
         "middle": BLOCK / 2,
         "radius": radius,
