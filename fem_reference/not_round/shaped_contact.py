@@ -241,7 +241,7 @@ def solve_shape(
     indenter : shape and numbers, see ``touching_shape``.   ball : the solid of an elastic one
     size, surface : of the triangles over their distance from the contact; on the surface below it over its
     extent.  quality : "fast", "default" or "fine"; sets size, surface and harmonics that are not given, more
-    of them for a contact with pointed ends on y = 0
+    of them for a contact with pointed ends on y = 0, smaller triangles below one longer than ``SLENDER``
     degree : of the polynomial in the pressure.   first : axes of the first contact over Hertz's
     Raises ValueError for bad input, ElementsNotConverged where no such contact is found.
     """

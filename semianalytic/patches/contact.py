@@ -145,7 +145,7 @@ class _State:
     extended, z : gap in contact, extended; P of that.  shift : last change of delta.
     step, slope, last : search direction, its (g, z), and g of the iteration before.
     residual, depth : largest |g| in contact over the scale; penetration [m], ``deep`` its limit.  first :
-    residual at the first iteration on the set.  left : largest |z| when the iteration stopped.
+    residual at the first iteration on the set.
     tension : patches with p < 0.  admissible : no tension, no penetration.
     iterations, on_set, set_updates, convolutions : counts; on_set those since the last change of the set.
     """
@@ -164,7 +164,6 @@ class _State:
     slope: float = 1.0
     residual: float = 0.0
     first: float = 0.0
-    left: float = 0.0
     depth: float = 0.0
     deep: float = 0.0
     updated: bool = False
@@ -175,6 +174,11 @@ class _State:
     set_updates: int = 0
     convolutions: int = 0
     history: list[tuple[float, float]] = field(default_factory=list)
+
+    @property
+    def left(self) -> float:
+        """Largest |z|: the change of p by a further step."""
+        return float(np.max(np.abs(self.z)))
 
 
 def solve(problem: Problem) -> Contact:
@@ -282,15 +286,13 @@ def _is_solved(state: _State, problem: Problem) -> bool:
     Raises NotConverged when they do not and the iterations are used up.
     """
     solved = _within_tolerance(state, problem)
-    if solved:
-        state.left = float(np.max(np.abs(state.z)))
     if solved and state.updated:
         state.p = problem.balanced(state.p)
         _find_gap_of_pressure(state, problem)
         _measure(state, problem)
         if not _within_tolerance(state, problem):
             _find_gap(state, problem)
-            solved, state.left = _within_tolerance(state, problem), float(np.max(np.abs(state.z)))
+            solved = _within_tolerance(state, problem)
     if not solved and state.iterations >= problem.max_iterations:
         raise NotConverged(
             f"gap in contact {state.residual:.1e} and penetration {state.depth / problem.scale:.1e} of the "
@@ -303,10 +305,11 @@ def _is_solved(state: _State, problem: Problem) -> bool:
 def _within_tolerance(state: _State, problem: Problem) -> bool:
     """Whether gap and penetration are within the tolerance, and a further step changes p by no more than
     ``LEFT`` times that share of its peak: the shortest waves of p hardly move the gap."""
-    if not (state.admissible and state.residual <= problem.tolerance):
+    tolerance = problem.tolerance
+    if not (state.admissible and state.residual <= tolerance):
         return False
-    most = numbers.LEFT * problem.tolerance * float(np.max(state.p))
-    return state.iterations >= numbers.PRECONDITIONED_ITERATIONS or float(np.max(np.abs(state.z))) <= most
+    settled = state.iterations >= numbers.PRECONDITIONED_ITERATIONS
+    return settled or state.left <= numbers.LEFT * tolerance * float(np.max(state.p))
 
 
 def _update_set(state: _State, problem: Problem) -> bool:
