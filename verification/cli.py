@@ -146,10 +146,21 @@ def _missing_extra(error: BaseException | None) -> str | None:
     return None
 
 
+def _joined(words: Sequence[str]) -> list[str]:
+    """``words`` with a negative value joined to its option, "--load=-20 N": alone it looks like an option."""
+    found: list[str] = []
+    for word in words:
+        if re.match(r"-\.?\d", word) and found and re.fullmatch(r"--[\w-]+", found[-1]):
+            word = f"{found.pop()}={word}"
+        found.append(word)
+    return found
+
+
 def main() -> None:
     """Entry of the ``coatcheck`` command."""
     try:
-        code = app(sys.argv[1:], exit_on_error=False, print_error=False, result_action="return_value")
+        words = _joined(sys.argv[1:])
+        code = app(words, exit_on_error=False, print_error=False, result_action="return_value")
     except CycloptsError as error:
         text = " ".join(str(error).split())
         print_error(_with_remedy(text, sys.argv[1:2]))

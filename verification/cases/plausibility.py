@@ -180,12 +180,12 @@ def _wide(problem: CoatedContact) -> Iterator[str]:
 def _slip(
     key: str, value: float, units: Mapping[str, float], usual: tuple[float, float], prefer: str = ""
 ) -> str:
-    """ "; KEY = VALUE looks like UNIT" of a bare SI number; "; check its unit" of any other."""
+    """ "; KEY = VALUE looks like UNIT, give ..." of a bare SI number; "; check its unit" of any other."""
     if isinstance(value, InSI) or usual[0] <= value <= usual[1]:
         return "; check its unit"
     for unit in sorted(units, key=lambda unit: unit != prefer):
         if usual[0] <= value * units[unit] <= usual[1]:
-            return f"; {key} = {value:g} looks like {unit}"
+            return f'; {key} = {value:g} looks like {unit}, give "{value:g} {unit}"'
     return "; check its unit"
 
 

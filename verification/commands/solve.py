@@ -269,10 +269,15 @@ def _from_options(
     temperature_change: float | None,
     materials: Path,
 ) -> Case:
-    unsized = (ball, radii, roller) == (None, None, None)
-    if unsized or substrate is None or (load is None and approach is None):
-        asked = "--ball, --radii or --roller, --load or --approach, and --substrate"
-        raise CommandError(f"give a case file, or {asked}; see coatcheck solve --help")
+    needed = {
+        "--ball, --radii or --roller": (ball, radii, roller),
+        "--load or --approach": (load, approach),
+        "--substrate": (substrate,),
+    }
+    missing = [options for options, values in needed.items() if not any(values)]
+    if missing or substrate is None:
+        asked = ", ".join([*missing[:-1], f"and {missing[-1]}" if missing[1:] else missing[-1]])
+        raise CommandError(f"give {asked}, or a case file alone; see coatcheck solve --help")
     try:
         layers = coating or [], friction or 0.0, ball_coating or []
         words = (ball, load, substrate, *layers, approach, materials, temperature_change)
