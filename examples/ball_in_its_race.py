@@ -21,6 +21,6 @@ for name, coatings in {"bare": [], "DLC on both": ["DLC 4 um"]}.items():
     print(f"{name}: half axes {half_axes}, p0 {p0 / 1e6:.3f} MPa{closed}")
     surface = found.courses[0]
     axes.plot(surface.x * 1e6, surface.stress[0] / 1e6, label=name)
-axes.set(xlabel="x along the rolling direction [µm]", ylabel="sigma_xx on the race [MPa]")
+axes.set(xlabel="x along the rolling direction [µm]", ylabel=r"$\sigma_{xx}$ on the race [MPa]")
 axes.legend()
 figure.savefig("ball_in_its_race.png", dpi=120)

@@ -28,10 +28,8 @@ for row, found in enumerate(answers.values()):
     worst = max(found.modes, key=lambda mode: mode.utilisation)
     fails = worst.utilisation > 1
     axes.barh(row, worst.utilisation, color="#D55E00" if fails else "#0072B2", hatch="//" if fails else "")
-    place = f"{worst.where}: {worst.quantity}"
-    axes.annotate(
-        place, (worst.utilisation, row), (4, 0), textcoords="offset points", va="center", fontsize=8
-    )
+    place = f"{worst.where}: {worst.quantity}".replace("_", " ")
+    axes.text(max(worst.utilisation, 1) + 0.03, row, place, va="center", fontsize=8)
 axes.axvline(1.0, color="black", linewidth=1)
 axes.set_yticks(range(len(answers)), answers)
 axes.invert_yaxis()

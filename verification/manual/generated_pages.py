@@ -44,14 +44,15 @@ def _gallery() -> Iterator[tuple[str, str | bytes]]:
     """The scripts of ``examples/`` in a checkout with their pictures; an installed package has none."""
     parts = [
         "# Gallery",
-        "Scripts that run as they are, from `examples/` of the repository, each with its picture.",
+        "Scripts of the repository, each with the command that runs it and the picture that it draws.",
     ]
     for script in sorted((ROOT / "examples").glob("*.py")):
         code = script.read_text(encoding="utf-8")
         title, _, rest = code.removeprefix('"""').partition('"""')
         picture_name = f"gallery_{script.stem}.png"
         image = f"```{{image}} {picture_name}\n:alt: {title}\n:width: 80%\n```"
-        parts.append(f"## {script.stem.replace('_', ' ').capitalize()}\n\n{title}\n\n{image}")
+        command = f"```sh\npython examples/{script.name}\n```"
+        parts.append(f"## {script.stem.replace('_', ' ').capitalize()}\n\n{title}\n\n{command}\n\n{image}")
         parts.append(f"```python\n{rest.strip()}\n```")
         yield picture_name, (script.parent / "pictures" / f"{script.stem}.png").read_bytes()
     yield "gallery.md", "\n\n".join(parts) + "\n"

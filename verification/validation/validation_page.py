@@ -72,8 +72,8 @@ def section(record: ValidationRecord) -> Section:
 
 
 def _summary(record: ValidationRecord) -> Table:
-    heads = ["data", "rows", "mean E", "rms E", "u_num", "u_input", "u_D", "u_val", "largest |E|/u_val"]
-    heads += ["bare film, u_val", "bare substrate, u_val", "admissible"]
+    heads = ["data", "rows", "mean E", "rms E", "u_num", "u_input", "u_D", "u_val", "largest |E|"]
+    heads += ["bare film", "bare substrate", "admissible"]
     rows = []
     for one in record.sets:
         u = one.u_val
@@ -91,8 +91,9 @@ def _summary(record: ValidationRecord) -> Table:
             )
         )
     caption = (
-        "Relative to the measured modulus; u_input, u_D, u_val: mean over the rows. All rows of a set share "
-        "systematic errors and are not independent tests."
+        "Relative to the measured modulus; u_input, u_D, u_val: mean over the rows. Over u_val: largest |E|, "
+        "bare film, bare substrate. All rows of a set share systematic errors and are not "
+        "independent tests."
     )
     return Table(caption, heads, rows)
 
@@ -222,7 +223,7 @@ def _drawn(one: Validated) -> Markup:
             axes.axvspan(low, high, color=ROLES["zone"], alpha=0.13, lw=0, zorder=0)
             axes.annotate(why, (np.sqrt(low * high), 0.02), xycoords=("data", "axes fraction"), ha="center")
         axes.set(xscale="log", xlim=(a[0] / t, a[-1] / t), xlabel="a / t", ylabel="S / (2a) [GPa]")
-        axes.legend(frameon=False, loc="upper left", ncols=2)
+        figure.legend(frameon=False, loc="outside upper center", ncols=5, columnspacing=1, handlelength=1.5)
         return inline(written(figure), answer(one), css="print")
 
 

@@ -195,7 +195,7 @@ class Criteria(Strict):
             names = ", ".join(self.strengths(1.0))
             return (
                 f"No strengths are given, so the preferable thickness is where the largest of {names} is "
-                "smallest; [criteria] minimise names other stresses, [criteria] strength gives strengths."
+                "smallest; criteria.minimise chooses other stresses, criteria.strength states strengths."
             )
         factor = f", each stress times {self.safety:g}" if self.safety != 1 else ""
         kind = f"the {100 * self.fractile:g} % fractile of its strength" if self.scatters else "its strength"

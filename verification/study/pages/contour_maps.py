@@ -67,7 +67,7 @@ def _map(
     x, depths = shown.x / units.metre, [z / units.metre for z in shown.z]
     fields = [[measure(s) / units.pascal for s in shown.stress] for measure in FIELDS.values()]
     size = curve.a_h / units.metre
-    with sheet(150, right=17) as figure:
+    with sheet(150, right=21) as figure:
         panels = figure.subplots(3, 1, sharex=True)
         for axes, name, layers, levels in zip(panels, FIELDS, fields, scales, strict=True):
             axes.grid(visible=False)

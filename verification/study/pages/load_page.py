@@ -223,10 +223,13 @@ def _tracks(study: Study, found: Sequence[Critical]) -> list[Drawn]:
             lower.set_ylabel("probability\nof failure")
             lower.set_xlabel("load [N]")
             lower.set_xlim(one.load[0], one.load[-1])
+            wide = one.load[-1] > WIDE * one.load[0]
+            if wide:
+                lower.set_xscale("log")
+            # after the scale, which would replace its locator and formatter
             top = upper.secondary_xaxis("top", functions=_pressure(ramp.load, ramp.p0 / units.pascal))
             top.xaxis.set_major_locator(MaxNLocator(5))
-            if one.load[-1] > WIDE * one.load[0]:
-                lower.set_xscale("log")
+            if wide:
                 for axis in (lower.xaxis, top.xaxis):
                     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
                     axis.set_major_formatter(lambda value, _: f"{value:g}")

@@ -124,7 +124,7 @@ def _inputs_section(study: Study) -> Section:
         row("friction", ", ".join(f"{f:g}" for f in study.frictions)),
         row(
             "residual stress of the coating",
-            ", ".join(units.shown_stress(one) for one in study.residual) or "none",
+            ", ".join(units.shown_stress(one) for one in study.residual).replace("-", "−") or "none",
         ),
         row(
             "uncoated",
@@ -202,8 +202,8 @@ def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Sectio
         "stress": "Lines: semi-analytical method; triangles: finite elements; crosses: exact reference, at "
         "the cross-checked points. ",
         "contact": "Lines, triangles, crosses as above. ",
-        "contours": "Sliding in +x. Thick bar: the contact; dashed: the interface. All thicknesses have the "
-        "same extent and the same scales. ",
+        "contours": "Sliding in +x. Thick bar: the contact; dashed: the interface. All maps of a "
+        "coating have the same extent and the same scales. ",
     }
     files = ", ".join(f"{d.name}.pdf" for d in drawings)
     text = f"{captions.get(anchor, '')}For print, in the folder of figures: {files}."

@@ -180,8 +180,8 @@ def _against_thickness(
             axes.set_ylabel(f"{NAMES.get(quantity) or f'${QUANTITY[quantity].tex}$'} [{unit}]")
             _beside(axes, size, f"over ${scale}$".replace("delta", r"\delta"))
             if heading:
-                axes.text(0.5, 0.97, heading, transform=axes.transAxes, ha="center", va="top")
-                axes.margins(y=0.12)
+                axes.text(0.5, 0.94, heading, transform=axes.transAxes, ha="center", va="top")
+                axes.margins(y=0.2)
         thickness_axes(list(panels), curves[0].a_h / units.metre, units)
         below(figure, keys, 3)
         return drawn(figure, name, title, "", rows)
@@ -293,8 +293,9 @@ def _use(choice: Choice, units: Units) -> Drawn:
         axes.set_yscale("log")
         axes.set_ylim(0.02, 1.5 * max(1.0, max(float(one.max()) for one in use.values())))
         caption = (
-            "Largest over all frictions. Green: admissible thicknesses, where every stress stays below its "
-            "strength" + (f", the {100 * choice.criteria.fractile:g} % fractile." if scattered else ".")
+            "Largest over all frictions; below 0.02 not drawn. Green: admissible thicknesses, where every "
+            "stress stays below its strength"
+            + (f", the {100 * choice.criteria.fractile:g} % fractile." if scattered else ".")
         )
         if scattered:
             chances = choice.chances(choice.h[some])
@@ -333,12 +334,12 @@ def governing_figure(choices: Sequence[Choice], units: Units) -> list[Drawn]:
             h, ratio, governing, cmap=colours, vmin=-0.5, vmax=len(modes) - 0.5, shading="nearest",
             rasterized=True
         )  # fmt: skip
-        lines = axes.contour(h, ratio, largest, levels=6, colors="#555555", linewidths=0.6)
+        lines = axes.contour(h, ratio, largest, levels=6, colors="#444444", linewidths=0.6)
         axes.clabel(lines, fontsize=6, fmt="%.3g")
         if first.criteria.limited:
             axes.contour(h, ratio, largest, levels=[1.0], colors="#c02a2a", linewidths=1.6)
         for curve in (one.curves[0] for one in choices):
-            axes.plot(curve.h * size, np.full_like(curve.h, curve.ratio), ".", color="#222222", ms=1.6)
+            axes.plot(curve.h * size, np.full_like(curve.h, curve.ratio), ".", color="#444444", ms=1.6)
         axes.set_yscale("log")
         axes.yaxis.set_minor_formatter(NullFormatter())
         axes.set_yticks(sorted({one.curves[0].ratio for one in choices}))

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from verification.cases.unit_numbers import Units
-from verification.page.page_parts import Cell, Part, Section, Table, Value, number, row, table_of
+from verification.page.page_parts import Cell, Part, Section, Table, Value, number, row, table_of, words
 from verification.study.choice.failure_criteria import MODES
 from verification.study.choice.thickness_choice import DRAWN, Choice, End, Range, choice
 from verification.study.pages.contour_maps import contour_figures, nearest
@@ -102,13 +102,13 @@ def _length(found: Choice, h: float, units: Units) -> str:
 def _limits(found: Choice, pair: Range) -> str:
     """Cause of each limit, with its share of the samples in which the coating fails there."""
     said = []
-    words = (
-        ("the limit below is set where", "above where") if pair[0] else ("", "the limit above is set where")
+    causes = (
+        ("The lower limit is where", "the upper limit where") if pair[0] else ("", "The upper limit is where")
     )
-    for word, end in zip(words, pair, strict=True):
+    for word, end in zip(causes, pair, strict=True):
         if end is not None:
             said.append(f"{word} {MODES[end.mode]} ({_share(found, end)}f = {end.friction:g})")
-    return f"; {', '.join(said)}" if said else ""
+    return f". {', '.join(said)}" if said else ""
 
 
 def _share(found: Choice, end: End) -> str:
@@ -158,6 +158,10 @@ def write_study_report(
     solved, lost = (sum(counts) for counts in ([c.h.size for c in every], [len(c.failures) for c in every]))
     points = ("points", f"{solved} solved" + (f", {lost} could not be" if lost else ""))
     summary = " ".join(said) or f"No answer: no curve of {study.title} has two solved points."
+    if len(choices) > 1:  # the first section holds the answer for each
+        ends = (f"E1/E2 = {one.curves[0].ratio:.3g}: {between(one, one.even, units)}" for one in choices)
+        first, *_, last = ends
+        summary = f"{first} stress the bodies least; {last}."
     first, about = _preference(study, choices, said), [points, *facts]
     return write_page(table, study, folder, columns, said, summary, first, draws, failures, about, drawing)
 
@@ -194,7 +198,7 @@ def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) ->
         columns.append(
             (
                 f"admissible h [{units.length}]",
-                lambda one: (
+                lambda one: words(
                     lengths("; ".join(between(one, ends, units, safe=True) for ends in one.ranges)) or "none"
                 ),
             )
@@ -223,8 +227,8 @@ def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
     for one in choices:
         places = {"best": one.best}
         for low, high in one.ranges:
-            places |= {"limit below": low.h} if low else {}
-            places |= {"limit above": high.h} if high else {}
+            places |= {"lower limit": low.h} if low else {}
+            places |= {"upper limit": high.h} if high else {}
         chances = one.chances(np.array([*places.values()]))
         curve = one.curves[0]
         for k, (what, h) in enumerate(places.items()):
