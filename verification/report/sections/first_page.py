@@ -315,7 +315,7 @@ def _unverified(material: ReportMaterial) -> list[str]:
         "Residual stress, temperature, graded coatings, strengths and critical loads: coatcheck solve and "
         "study add them to the stresses, without a second method.",
         "Ellipses on films that are thin beside their short half axis: of those drawn at random some "
-        "disagree (manual, Verdicts).",
+        "disagree (manual, Uncertainty and verdict).",
         "Stress, friction and shape of the contact in an experiment."
         if material.evidence.validation
         else "Any experiment.",
@@ -352,10 +352,11 @@ def worth(material: ReportMaterial) -> list[Worth]:
     if faults := evidence.faults:
         for place, rows in by_place(faults).items():
             # what judges a method shows in self-tests, published tables and the manifest, too
-            caught = sum(row.caught for row in rows), len(rows)
-            good, total = caught if place in ("harness", "references") else score(rows)
+            anyhow = place in ("harness", "references")
+            good, total = (sum(row.caught for row in rows), len(rows)) if anyhow else score(rows)
             if total:
-                recorded(f"faults planted in the {place} noticed", good, total, "#faults", faults)
+                also = "by any check; " if anyhow else ""
+                recorded(f"faults planted in the {place} noticed", good, total, "#faults", faults, also)
         silent = [row not in faults.alarms for row in faults.controls]
         share("runs without a fault left alone", silent if not all(silent) else (), "#faults")
     if measured := evidence.validation:
