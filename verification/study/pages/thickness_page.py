@@ -160,8 +160,8 @@ def write_study_report(
     summary = " ".join(said) or f"No answer: no curve of {study.title} has two solved points."
     if len(choices) > 1:  # the first section holds the answer for each
         ends = (f"E1/E2 = {one.curves[0].ratio:.3g}: {between(one, one.even, units)}" for one in choices)
-        first, *_, last = ends
-        summary = f"{first} stress the bodies least; {last}."
+        lowest, *_, highest = ends
+        summary = f"{lowest} stress the bodies least; {highest}."
     first, about = _preference(study, choices, said), [points, *facts]
     return write_page(table, study, folder, columns, said, summary, first, draws, failures, about, drawing)
 
