@@ -72,7 +72,7 @@ def _drawn(
     for beside in panels[:, 1]:  # room for the legends
         beside.set_visible(False)
     a = answer.reach / units.metre
-    _section(above, maps[0], seen[0], first_principal, "largest tension $σ_1$; white: 0", a, units)
+    _section(above, maps[0], seen[0], first_principal, "largest tension $σ_1$; line: 0", a, units)
     _section(above, maps[1], seen[1], von_mises, "von Mises stress", a, units)
     for course, colour, style in _cycle(_chosen(answer.courses, 0)):
         x, y = course.x / units.metre, course.stress[0] / units.pascal
@@ -122,10 +122,11 @@ def _section(
         field = axes.pcolormesh(x, z, stress, shading="gouraud", rasterized=True, **scale)
         if least < 0 < most:
             axes.contour(x, z, stress, levels=[0.0], colors="white", linewidths=1.0)
-        axes.axhline(z[0], color="black", linewidth=0.8 if len(depths) <= MOST else 0.3)
+        if z[-1] - z[0] > 0.01 * depths[-1][-1]:  # thinner layers would be one black bar
+            axes.axhline(z[0], color="black", linewidth=0.8 if len(depths) <= MOST else 0.3)
     axes.plot(x[column], depths[layer][row], "k^", markersize=6, clip_on=False)
     axes.plot([-a, a], [0, 0], color="black", linewidth=4, solid_capstyle="butt", clip_on=False)
-    axes.set(ylim=(float(depths[-1][-1]), 0.0), ylabel=f"z [{units.length}]")
+    axes.set(ylim=(float(depths[-1][-1]), 0.0), xlabel=f"x [{units.length}]", ylabel=f"z [{units.length}]")
     axes.grid(visible=False)
     axes.set_title(f"{title}; triangle: largest", fontsize=8)
     figure.colorbar(field, ax=axes, label=units.stress)

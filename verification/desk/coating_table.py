@@ -25,7 +25,7 @@ from verification.desk.stack_text import conditions, stack
 from verification.desk.table_file import read_cells
 from verification.page.figures import inline, written
 from verification.page.html_page import render_sections
-from verification.page.page_parts import Gallery, Panel, Part, Section, Value, number, table_of
+from verification.page.page_parts import Gallery, Panel, Part, Section, Value, number, table_of, words
 from verification.running.case_result import message_of
 from verification.sources.source_registry import METHODS
 
@@ -176,7 +176,7 @@ def table_page(rows: Sequence[CoatingRow], cases: Sequence[Case], title: str) ->
     table = table_of(
         "By the semi-analytical method, residual stress included, each under its own load.",
         rows,
-        [(head, _column(i)) for i, head in enumerate((*HEADS, *VERDICT[:-1]))],
+        [(head, _column(i)) for i, head in enumerate((*HEADS, *VERDICT[:-1])) if i != 1],
         row_css=lambda one: "disagrees" if one.governing and one.governing[1].utilisation > 1 else "",
     )
     sections = [Section("table", "Coatings", [Part("", [table])])]
@@ -217,7 +217,7 @@ def _bars(rows: Sequence[CoatingRow]) -> Markup:
 
 
 def _digits(*values: float) -> list[str]:
-    return ["" if value != value else f"{value:.3g}" for value in values]
+    return ["" if value != value else f"{float(f'{value:.3g}'):g}" for value in values]
 
 
 def _column(i: int) -> Callable[[CoatingRow], Value]:
@@ -225,7 +225,8 @@ def _column(i: int) -> Callable[[CoatingRow], Value]:
 
     def cell(row: CoatingRow) -> Value:
         text = row.cells[i]
-        words = i < 2 or i == len(HEADS)
-        return text if words or not text else number(float(text), lambda _: text)
+        if i == len(HEADS):
+            return words(text)
+        return text if i == 0 or not text else number(float(text), lambda _: text)
 
     return cell

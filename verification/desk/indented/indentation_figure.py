@@ -38,7 +38,7 @@ def _drawn(fit: FilmFit, title: str) -> Figure:
     lower.fill_between(x, low - fitted, high - fitted, color=COLOURS[0], alpha=0.3, linewidth=0)
     lower.axhline(0.0, color=COLOURS[0])
     upper.set_ylabel(y_name)
-    lower.set(xlabel=x_name, ylabel="measured - fit")
+    lower.set(xlabel=x_name, ylabel="measured − fit")
     upper.legend(frameon=False)
     figure.suptitle(title, fontsize=9, wrap=True)
     return figure
