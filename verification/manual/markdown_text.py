@@ -17,8 +17,8 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]], right: int = 99) -
 
 
 def text(words: str) -> str:
-    """Plain text in which Markdown finds no markup."""
-    return "".join(f"\\{c}" if c in "\\`*_{}[]<>$#" else c for c in words)
+    """Plain text in which Markdown finds no markup, with the sign of a negative value as a minus."""
+    return "".join(f"\\{c}" if c in "\\`*_{}[]<>$#" else c for c in words.replace("= -", "= −"))
 
 
 def symbol(name: str) -> str:
