@@ -72,7 +72,7 @@ _RULES: tuple[tuple[str, Callable[..., list[Piece]]], ...] = (
     (r"(?<!\w)tau_max(?!\w)", lambda: _indexed("tau", "max")),
     (r"(?<!\w)von_mises_max(?!\w)", lambda: _indexed("sigma", "vM")),
     (r"(?<!\w)dW/d ?delta(?!\w)", lambda: [Piece("d"), *_letter("W"), Piece("/d"), *_letter("delta")]),
-    (r"(?<!\w)E([12s])?\*(?!\w)", _modulus),
+    (r"(?<!\w)E_?([12s]|ball)?\*(?!\w)", _modulus),
     (r"(?<!\w)(E|nu|h)_?([12s])(?!\w)", _indexed),
     (r"(?<!\w)(p)_?(0)(?!\w)", _indexed),
     (r"(?<!\w)(U)_([A-Z])(?!\w)", _component),
