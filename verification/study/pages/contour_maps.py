@@ -76,9 +76,9 @@ def _map(
                 filled = axes.contourf(x, z, values, levels=levels, cmap=cmap, extend="both")
                 filled.set_rasterized(True)
                 axes.contour(x, z, values, levels=levels, colors="#333333", linewidths=0.25)
-            axes.axhline(h * size, color="black", linewidth=0.9, linestyle=(0, (4, 2)))
+            axes.axhline(h * size, color="#777777", linewidth=0.9, linestyle=(0, (4, 2)))
             edge = a / units.metre
-            axes.plot([-edge, edge], [0, 0], color="black", linewidth=3, solid_capstyle="butt")
+            axes.plot([-edge, edge], [0, 0], color="#c02a2a", linewidth=3, solid_capstyle="butt")
             axes.set(xlim=(x[0], x[-1]), ylim=(depths[-1][-1], 0), ylabel=f"z [{units.length}]")
             at = axes.get_position()
             bar = figure.colorbar(filled, cax=figure.add_axes((at.x1 + 0.02, at.y0, 0.03, at.height)))

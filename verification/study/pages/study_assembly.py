@@ -202,7 +202,7 @@ def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Sectio
         "stress": "Lines: semi-analytical method; triangles: finite elements; crosses: exact reference, at "
         "the cross-checked points. ",
         "contact": "Lines, triangles, crosses as above. ",
-        "contours": "Sliding in +x. Thick bar: the contact; dashed: the interface. All maps of a "
+        "contours": "Sliding in +x. Red bar: the contact; dashed: the interface. All maps of a "
         "coating have the same extent and the same scales. ",
     }
     files = ", ".join(f"{d.name}.pdf" for d in drawings)
