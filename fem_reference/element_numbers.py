@@ -108,7 +108,7 @@ ALLOWED = 3e-3
 
 # --- contacts that are not round: uncertainty [test_shaped_contact]
 SHAPED_COARSER = 1.3  # triangles of the companion over those of the mesh
-LOWER = 2  # by which the degree of the companion's pressure is lowered
+LOWER = 2  # the step of the degree of the pressure; changes by up to two steps count
 # Times the change of fields from the companion, with the order that is observed beside edges; and that of the
 # pressure and the scalars by the last degree.
 OF_FIELDS = 2.0

@@ -53,21 +53,27 @@ class Closed:
         """The contact by a pressure of another degree; arguments as of ``closed``."""
         return closed(self.compliances, self.pressure.of_degree(degree), height, load, last)
 
-    def as_rich_as_helps(self, most: int, height: Height, load: float, last: int) -> tuple["Closed", float]:
+    def as_rich_as_helps(
+        self, most: int, height: Height, load: float, last: int
+    ) -> tuple["Closed", tuple["Closed", ...]]:
         """The contact by a higher degree, to ``most``, as long as each moves the edge by ``LESS``.
 
         What elements miss at the edge cannot be closed, and a pressure of too many terms would follow it.
-        Returned with what the last degree moved, see ``moved``.
+        Returned with those by the degrees beside it: two lower ones and the one that no longer helped, where
+        they were solved. The change by one alone may be small by chance.
         """
-        found, step = self, chosen.LOWER
-        by = found.moved(found.of_degree(found.pressure.degree - step, height, load, last))
-        while found.pressure.degree + step <= most:
-            more = found.of_degree(found.pressure.degree + step, height, load, last)
-            moved = more.moved(found)
-            if not more.converged or moved > chosen.LESS * by:
+        tried = [self.of_degree(self.pressure.degree - chosen.LOWER, height, load, last), self]
+        by = self.moved(tried[0])
+        while tried[-1].pressure.degree + chosen.LOWER <= most:
+            more = tried[-1].of_degree(tried[-1].pressure.degree + chosen.LOWER, height, load, last)
+            moved = more.moved(tried[-1])
+            if not more.converged:
                 break
-            found, by = more, moved
-        return found, by
+            tried.append(more)
+            if moved > chosen.LESS * by:
+                return tried[-2], (*tried[-4:-2], more)
+            by = moved
+        return tried[-1], tuple(tried[-3:-1])
 
     def moved(self, other: "Closed") -> float:
         """Change of the contact radius to that of the ``other``, over it, if no part of the edge made up for

@@ -74,7 +74,8 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
-    companion : pressure on the companion's mesh of the same degree; its fields have a lower degree
+    companion : pressure on the companion's mesh of the same degree; its fields have that degree beside it
+        which moved the edge most.  degrees : pressures by those degrees on this mesh
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
@@ -90,6 +91,7 @@ class ShapedContact(PressedSolid):
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
     companion: StarPressure | None = field(default=None, repr=False)
+    degrees: tuple[StarPressure, ...] = field(default=(), repr=False)
     typical: float = 0.0
     opposite: "ShapedContact | None" = field(default=None, repr=False)
     frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
@@ -170,9 +172,14 @@ class ShapedContact(PressedSolid):
         if not stated or self._coarse is None or self.companion is None:
             return ElementAnswer(p)
         U = self._uncertain_pressure(points.x, points.y)
-        companion, lower = (self._other(points, one) for one in (self.companion, self._coarse.pressure))
-        here = BY_CONDITIONS * np.abs(p - companion) + chosen.OF_FIELDS * np.abs(companion - lower)
+        here = self._uncertain_by(p, *(self._other(points, one) for one in (self.companion, *self.degrees)))
         return ElementAnswer(p, np.maximum(here, U))
+
+    @staticmethod
+    def _uncertain_by(fine: np.ndarray, companion: np.ndarray, *degrees: np.ndarray) -> np.ndarray:
+        """Uncertainty by the change from the companion and the largest from those of other degrees."""
+        by_degree = np.max([np.abs(fine - one) for one in degrees], axis=0)
+        return np.asarray(BY_CONDITIONS * np.abs(fine - companion) + chosen.OF_FIELDS * by_degree)
 
     def _uncertain_pressure(self, x: Any, y: Any, beyond: bool = False) -> np.ndarray:
         """Uncertainty of the pressure [Pa] at points as far from the edge as x, y.
@@ -186,17 +193,15 @@ class ShapedContact(PressedSolid):
 
     @cached_property
     def _changes_inwards(self) -> RegularGridInterpolator:
-        """Largest change [Pa] near w, tau: by the companion, and by the degree of the pressure.
+        """Largest change [Pa] near w, tau: by the companion, and by the degrees of the pressure.
 
         All at the same w, the share of the way to the own edge. A change at one point may be small by chance:
         within one wave of the polynomial around the contact, and next to w, the largest counts.
         """
-        assert self._coarse is not None
         assert self.companion is not None
-        pressures = self._fine.pressure, self.companion, self._coarse.pressure
+        pressures = self._fine.pressure, self.companion, *self.degrees
         w, turn = 1 - np.geomspace(1, 1e-4, 60), np.linspace(0, np.pi, 97)
-        fine, companion, lower = (one(*one.points(w[:, None], turn)) for one in pressures)
-        change = BY_CONDITIONS * np.abs(fine - companion) + chosen.OF_FIELDS * np.abs(companion - lower)
+        change = self._uncertain_by(*(one(*one.points(w[:, None], turn)) for one in pressures))
         wave = 2 * round(turn.size / self._fine.pressure.degree) + 1
         largest = maximum_filter(change, (5, wave), mode=("nearest", "mirror")) * self._units.pressure
         return RegularGridInterpolator((np.append(w, 1.0), turn), np.vstack([largest, largest[-1:]]))
@@ -326,7 +331,7 @@ def solve_shape(
 
     grid = ShapedGrid(size, surface, harmonics, chosen.MARGIN, chosen.DENSITY)
     poorest = on_mesh(reach, grid, begin.of_degree(least))
-    found, moved = poorest.as_rich_as_helps(most, *arguments(reach, grid))
+    found, beside = poorest.as_rich_as_helps(most, *arguments(reach, grid))
     found.check(shape.scaled(reach), indenter[0])
     numbers, residual = _numbers(found), found.residual(shape.scaled(reach))
     sliding = (friction, -friction)
@@ -338,15 +343,17 @@ def solve_shape(
         coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
         start = found.pressure.scaled(1 / reach)
         companion = on_mesh(reach, coarser, start)
-        fewer = companion.of_degree(found.pressure.degree - chosen.LOWER, *arguments(reach, coarser))
+        moved = [found.moved(one) for one in beside]
+        unlike = beside[int(np.argmax(moved))].pressure.degree
+        changed = companion.of_degree(unlike, *arguments(reach, coarser))
         other = companion.pressure
-        coarse = [_fields(fewer, k, sliding[k], r * surface) for k in range(len(layers))]
+        coarse = [_fields(changed, k, sliding[k], r * surface) for k in range(len(layers))]
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
         # in a change of the area parts of the edge may make up for each other
         change[0] = BY_CONDITIONS * found.moved(companion) * numbers[0]
         change[1] = max(change[1], chosen.STIFF * (size / default[0]) ** 4 * numbers[1])
-        cut = chosen.OF_FIELDS * np.abs(_numbers(companion) - _numbers(fewer))
-        cut[0] = chosen.OF_FIELDS * moved * numbers[0]
+        cut = chosen.OF_FIELDS * np.max([np.abs(numbers - _numbers(one)) for one in beside], axis=0)
+        cut[0] = chosen.OF_FIELDS * max(moved) * numbers[0]
         left = np.maximum(residual, chosen.OF_FIELDS * found.errors) * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
@@ -385,6 +392,7 @@ def solve_shape(
                 extent_uncertainty=extents,
                 height=shape.height,
                 companion=other,
+                degrees=tuple(one.pressure for one in beside),
                 typical=_typical(PressedSolid(*pair, unit)) if estimate_uncertainty else 0.0,
                 opposite=sides[0] if sides else None,
             )
