@@ -17,7 +17,7 @@ from scipy.ndimage import maximum_filter
 from fem_reference import element_numbers as chosen
 from fem_reference.element_answer import ElementAnswer, ElementPoints, ElementUncertainty
 from fem_reference.meshing.mesh import surface_size
-from fem_reference.not_round.gap_closing import Closed, closed
+from fem_reference.not_round.gap_closing import BY_CONDITIONS, Closed, OnTwoMeshes, as_rich_as_helps, closed
 from fem_reference.not_round.harmonic_compliance import harmonic_compliance
 from fem_reference.not_round.indenter_height import Height, Indenter, touching_shape
 from fem_reference.not_round.off_axis import OffAxisFields, PressedSolid, discretised
@@ -30,10 +30,6 @@ from fem_reference.validation import (
     check_positive,
     check_proportions,
 )
-
-# Roache's grid convergence index for two meshes, times the change from the companion: of what the conditions
-# give, with their order, (WEIGHT + 5)/2
-BY_CONDITIONS = chosen.SAFETY / (chosen.SHAPED_COARSER ** ((chosen.WEIGHT + 5) / 2) - 1)
 
 
 @dataclass(frozen=True)
@@ -74,8 +70,8 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
-    companion : pressure on the companion's mesh of the same degree; its fields have that degree beside it
-        which moved the edge most.  degrees : pressures by those degrees on this mesh
+    companion : pressure on the companion's mesh of the same degree; its fields have the next lower degree
+    lower : pressures on this mesh of the next lower degree and, if known, of that below
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
@@ -91,7 +87,7 @@ class ShapedContact(PressedSolid):
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
     companion: StarPressure | None = field(default=None, repr=False)
-    degrees: tuple[StarPressure, ...] = field(default=(), repr=False)
+    lower: tuple[StarPressure, ...] = field(default=(), repr=False)
     typical: float = 0.0
     opposite: "ShapedContact | None" = field(default=None, repr=False)
     frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
@@ -172,14 +168,15 @@ class ShapedContact(PressedSolid):
         if not stated or self._coarse is None or self.companion is None:
             return ElementAnswer(p)
         U = self._uncertain_pressure(points.x, points.y)
-        here = self._uncertain_by(p, *(self._other(points, one) for one in (self.companion, *self.degrees)))
+        here = self._uncertain_by(p, *(self._other(points, one) for one in (self.companion, *self.lower)))
         return ElementAnswer(p, np.maximum(here, U))
 
     @staticmethod
-    def _uncertain_by(fine: np.ndarray, companion: np.ndarray, *degrees: np.ndarray) -> np.ndarray:
-        """Uncertainty by the change from the companion and the largest from those of other degrees."""
-        by_degree = np.max([np.abs(fine - one) for one in degrees], axis=0)
-        return np.asarray(BY_CONDITIONS * np.abs(fine - companion) + chosen.OF_FIELDS * by_degree)
+    def _uncertain_by(fine: np.ndarray, companion: np.ndarray, *lower: np.ndarray) -> np.ndarray:
+        """Uncertainty by the change from the companion and those from lower degrees."""
+        return np.asarray(
+            BY_CONDITIONS * np.abs(fine - companion) + _by_degree(*(fine - one for one in lower))
+        )
 
     def _uncertain_pressure(self, x: Any, y: Any, beyond: bool = False) -> np.ndarray:
         """Uncertainty of the pressure [Pa] at points as far from the edge as x, y.
@@ -199,7 +196,7 @@ class ShapedContact(PressedSolid):
         within one wave of the polynomial around the contact, and next to w, the largest counts.
         """
         assert self.companion is not None
-        pressures = self._fine.pressure, self.companion, *self.degrees
+        pressures = self._fine.pressure, self.companion, *self.lower
         w, turn = 1 - np.geomspace(1, 1e-4, 60), np.linspace(0, np.pi, 97)
         change = self._uncertain_by(*(one(*one.points(w[:, None], turn)) for one in pressures))
         wave = 2 * round(turn.size / self._fine.pressure.degree) + 1
@@ -330,8 +327,16 @@ def solve_shape(
     unit = Scales(length=reach, pressure=E, modulus=E)
 
     grid = ShapedGrid(size, surface, harmonics, chosen.MARGIN, chosen.DENSITY)
-    poorest = on_mesh(reach, grid, begin.of_degree(least))
-    found, beside = poorest.as_rich_as_helps(most, *arguments(reach, grid))
+    r = chosen.SHAPED_COARSER
+    coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
+    first_on = [on_mesh(reach, one, begin.of_degree(least)) for one in (grid, coarser)]
+
+    def of_degree(degree: int) -> OnTwoMeshes:
+        pairs = zip(first_on, (grid, coarser), strict=True)
+        return OnTwoMeshes(*(one.of_degree(degree, *arguments(reach, mesh)) for one, mesh in pairs))
+
+    both, lower = as_rich_as_helps(of_degree, least, most)
+    found = both.found
     found.check(shape.scaled(reach), indenter[0])
     numbers, residual = _numbers(found), found.residual(shape.scaled(reach))
     sliding = (friction, -friction)
@@ -339,21 +344,15 @@ def solve_shape(
     coarse: list[OffAxisFields | None] = [None] * len(layers)
     uncertainty, extents, other = None, None, None
     if estimate_uncertainty:
-        r = chosen.SHAPED_COARSER
-        coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
-        start = found.pressure.scaled(1 / reach)
-        companion = on_mesh(reach, coarser, start)
-        moved = [found.moved(one) for one in beside]
-        unlike = beside[int(np.argmax(moved))].pressure.degree
-        changed = companion.of_degree(unlike, *arguments(reach, coarser))
+        companion, fewer = both.companion, lower[0].companion
         other = companion.pressure
-        coarse = [_fields(changed, k, sliding[k], r * surface) for k in range(len(layers))]
+        coarse = [_fields(fewer, k, sliding[k], r * surface) for k in range(len(layers))]
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
         # in a change of the area parts of the edge may make up for each other
         change[0] = BY_CONDITIONS * found.moved(companion) * numbers[0]
         change[1] = max(change[1], chosen.STIFF * (size / default[0]) ** 4 * numbers[1])
-        cut = chosen.OF_FIELDS * np.max([np.abs(numbers - _numbers(one)) for one in beside], axis=0)
-        cut[0] = chosen.OF_FIELDS * max(moved) * numbers[0]
+        cut = _by_degree(*(numbers - _numbers(one.found) for one in lower))
+        cut[0] = _by_degree(*(np.array(found.moved(one.found)) for one in lower)) * numbers[0]
         left = np.maximum(residual, chosen.OF_FIELDS * found.errors) * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
@@ -392,7 +391,7 @@ def solve_shape(
                 extent_uncertainty=extents,
                 height=shape.height,
                 companion=other,
-                degrees=tuple(one.pressure for one in beside),
+                lower=tuple(one.found.pressure for one in lower),
                 typical=_typical(PressedSolid(*pair, unit)) if estimate_uncertainty else 0.0,
                 opposite=sides[0] if sides else None,
             )
@@ -402,6 +401,15 @@ def solve_shape(
 
 def _fields(found: Closed, body: int, friction: float, surface: float) -> OffAxisFields:
     return OffAxisFields.of(found.compliances[body], found.nodal_loads, friction, found.pressure, surface)
+
+
+def _by_degree(*changes: np.ndarray) -> np.ndarray:
+    """Uncertainty by the changes from the next lower degree and from that below.
+
+    The first may be small by chance; the second, by two steps, counts as it is.
+    """
+    factors = (chosen.OF_FIELDS, 1.0)
+    return np.max([factor * np.abs(one) for factor, one in zip(factors, changes, strict=False)], axis=0)
 
 
 def _typical(solid: PressedSolid) -> float:
