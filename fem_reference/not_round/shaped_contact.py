@@ -329,11 +329,11 @@ def solve_shape(
     grid = ShapedGrid(size, surface, harmonics, chosen.MARGIN, chosen.DENSITY)
     r = chosen.SHAPED_COARSER
     coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
-    first_on = [on_mesh(reach, one, begin.of_degree(least)) for one in (grid, coarser)]
+    first_found = on_mesh(reach, grid, begin.of_degree(least))
+    meshes = (first_found, grid), (on_mesh(reach, coarser, first_found.pressure.scaled(1 / reach)), coarser)
 
     def of_degree(degree: int) -> OnTwoMeshes:
-        pairs = zip(first_on, (grid, coarser), strict=True)
-        return OnTwoMeshes(*(one.of_degree(degree, *arguments(reach, mesh)) for one, mesh in pairs))
+        return OnTwoMeshes(*(one.of_degree(degree, *arguments(reach, mesh)) for one, mesh in meshes))
 
     both, lower = as_rich_as_helps(of_degree, least, most)
     found = both.found
