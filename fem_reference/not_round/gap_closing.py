@@ -199,14 +199,14 @@ class OnTwoMeshes:
 
 def as_rich_as_helps(
     of_degree: Callable[[int], OnTwoMeshes], least: int, most: int
-) -> tuple[OnTwoMeshes, tuple[OnTwoMeshes, ...]]:
-    """The contact by that degree of the pressure whose edge is least uncertain, and by one or two lower ones.
+) -> tuple[OnTwoMeshes, tuple[OnTwoMeshes, OnTwoMeshes]]:
+    """The contact by that degree of the pressure whose edge is least uncertain, and by two lower ones.
 
     What elements miss at the edge cannot be closed, and a pressure of too many terms follows it: degrees from
     ``least`` to ``most`` are tried until ``WORSE`` in turn are more uncertain than the best. Nearest first.
     """
-    tried = [of_degree(least - chosen.LOWER), of_degree(least)]
-    best, uncertain = 1, tried[1].uncertain(tried[0])
+    tried = [of_degree(least - below * chosen.LOWER) for below in (2, 1, 0)]
+    best, uncertain = 2, tried[2].uncertain(tried[1])
     while tried[-1].found.pressure.degree + chosen.LOWER <= most and len(tried) - 1 - best < chosen.WORSE:
         tried.append(of_degree(tried[-1].found.pressure.degree + chosen.LOWER))
         if not (tried[-1].found.converged and tried[-1].companion.converged):
@@ -214,7 +214,7 @@ def as_rich_as_helps(
         more = tried[-1].uncertain(tried[-2])
         if more < uncertain:
             best, uncertain = len(tried) - 1, more
-    return tried[best], tuple(tried[max(best - 2, 0) : best][::-1])
+    return tried[best], (tried[best - 1], tried[best - 2])
 
 
 def _power(n: int) -> int:

@@ -71,7 +71,7 @@ class ShapedContact(PressedSolid):
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
     companion : pressure on the companion's mesh of the same degree; its fields have the next lower degree
-    lower : pressures on this mesh of the next lower degree and, if known, of that below
+    lower : pressures on this mesh of the next lower degree and of that below
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
@@ -120,7 +120,9 @@ class ShapedContact(PressedSolid):
         smeared = np.where(np.asarray(points.z) == 0, self._smeared(x, y), 0.0)
         distance = np.hypot(x, y) / (chosen.AXIS_SAFETY[1] * self._units.length)
         safety = chosen.OF_FIELDS * (1 + (chosen.AXIS_SAFETY[0] - 1) * np.maximum(1 - distance, 0))
-        of_pressure = np.where(np.asarray(points.z) == 0, self._uncertain_pressure(x, y, beyond=True), 0.0)
+        # beside an edge the stress along the surface is that of plane strain, -p inside and 2 f p outside
+        moved = (1 + 2 * abs(self._fine.friction)) * self._uncertain_pressure(x, y, beyond=True)
+        of_pressure = np.where(np.asarray(points.z) == 0, moved, 0.0)
         change = np.maximum(safety * U, chosen.OF_FIELDS * self.typical)
         return ElementAnswer(value, np.maximum(change, of_pressure) + self._errors[2] + smeared)
 
@@ -330,6 +332,7 @@ def solve_shape(
     r = chosen.SHAPED_COARSER
     coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
     first_found = on_mesh(reach, grid, begin.of_degree(least))
+    first_found.check(shape.scaled(reach), indenter[0])
     meshes = (first_found, grid), (on_mesh(reach, coarser, first_found.pressure.scaled(1 / reach)), coarser)
 
     def of_degree(degree: int) -> OnTwoMeshes:
@@ -350,7 +353,7 @@ def solve_shape(
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
         # in a change of the area parts of the edge may make up for each other
         change[0] = BY_CONDITIONS * found.moved(companion) * numbers[0]
-        change[1] = max(change[1], chosen.STIFF * (size / default[0]) ** 4 * numbers[1])
+        change[1] = max(change[1], chosen.STIFF * slender * (size / default[0]) ** 4 * numbers[1])
         cut = _by_degree(*(numbers - _numbers(one.found) for one in lower))
         cut[0] = _by_degree(*(np.array(found.moved(one.found)) for one in lower)) * numbers[0]
         left = np.maximum(residual, chosen.OF_FIELDS * found.errors) * np.abs(numbers)
@@ -362,7 +365,8 @@ def solve_shape(
         )
         total = np.sqrt(sum(part**2 for _, part in parts)) * units
         uncertainty = ElementUncertainty(float(total[0]), float(total[1]), float(total[2]), budget)
-        extents = float(total[3]), float(total[4])
+        # no extent is better known than the contact radius: the edge may be at rest at its ends by chance
+        extents = np.maximum(total[3:], total[0] / numbers[0] * numbers[3:])
     d = fine[0].discretisation
     nodes = np.linspace(0, 2.6 * found.pressure.extents[0], 160)
     sides: list[ShapedContact] = []
@@ -388,7 +392,7 @@ def solve_shape(
                     seconds=time.perf_counter() - began,
                 ),
                 uncertainty=uncertainty,
-                extent_uncertainty=extents,
+                extent_uncertainty=None if extents is None else (float(extents[0]), float(extents[1])),
                 height=shape.height,
                 companion=other,
                 lower=tuple(one.found.pressure for one in lower),
@@ -404,9 +408,10 @@ def _fields(found: Closed, body: int, friction: float, surface: float) -> OffAxi
 
 
 def _by_degree(*changes: np.ndarray) -> np.ndarray:
-    """Uncertainty by the changes from the next lower degree and from that below.
+    """Uncertainty of scalars by the changes from the next lower degree and from that below.
 
-    The first may be small by chance; the second, by two steps, counts as it is.
+    The first may be small by chance; the second, by two steps, counts as it is. At the edge, where the
+    pressure is extrapolated from inside, both count alike.
     """
     factors = (chosen.OF_FIELDS, 1.0)
     return np.max([factor * np.abs(one) for factor, one in zip(factors, changes, strict=False)], axis=0)
