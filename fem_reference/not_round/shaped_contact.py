@@ -183,16 +183,17 @@ class ShapedContact(PressedSolid):
     def _uncertain_pressure(self, x: Any, y: Any, beyond: bool = False) -> np.ndarray:
         """Uncertainty of the pressure [Pa] at points as far from the edge as x, y.
 
-        Outside 0, or ``beyond`` what it is as far inside: a pressure that is wrong there moves the stress.
+        Outside 0, or ``beyond`` what it is as far inside, and no less than farther inside: a pressure that is
+        wrong there moves the stress, that of the edge too.
         """
         w, tau = self._fine.pressure.polar(*(np.asarray(v) / self._units.length for v in (x, y)))
         inside = w < (2 if beyond else 1)
         share = np.where(inside, 1 - np.abs(1 - w), 0.0)
-        return np.where(inside, self._changes_inwards(np.stack([share, tau], axis=-1)), 0.0)
+        return np.where(inside, self._changes[int(beyond)](np.stack([share, tau], axis=-1)), 0.0)
 
     @cached_property
-    def _changes_inwards(self) -> RegularGridInterpolator:
-        """Largest change [Pa] near w, tau: by the companion, and by the degrees of the pressure.
+    def _changes(self) -> tuple[RegularGridInterpolator, RegularGridInterpolator]:
+        """Largest change [Pa] near w, tau by the companion and by lower degrees; the largest from w = 0 to w.
 
         All at the same w, the share of the way to the own edge. A change at one point may be small by chance:
         within one wave of the polynomial around the contact, and next to w, the largest counts.
@@ -203,7 +204,11 @@ class ShapedContact(PressedSolid):
         change = self._uncertain_by(*(one(*one.points(w[:, None], turn)) for one in pressures))
         wave = 2 * round(turn.size / self._fine.pressure.degree) + 1
         largest = maximum_filter(change, (5, wave), mode=("nearest", "mirror")) * self._units.pressure
-        return RegularGridInterpolator((np.append(w, 1.0), turn), np.vstack([largest, largest[-1:]]))
+        here, inwards = (
+            RegularGridInterpolator((np.append(w, 1.0), turn), np.vstack([one, one[-1:]]))
+            for one in (largest, np.maximum.accumulate(largest))
+        )
+        return here, inwards
 
     def _other(self, points: Any, pressure: StarPressure) -> np.ndarray:
         """Another pressure [Pa] at the points that are compared."""
