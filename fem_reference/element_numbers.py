@@ -63,10 +63,9 @@ SURFACE_LEAST, SURFACE_RATE, BURIED_RATE = 1 / 24, 11.0, 7.5
 # Size of the triangles, of those on the surface, harmonics, degree of the polynomial in the pressure over the
 # number of waves around, which counts as 2 at least. [test_shaped_contact]
 SHAPED_QUALITY = {"fast": (0.5, 0.12, 120, 4), "default": (0.44, 0.045, 240, 6), "fine": (0.4, 0.035, 288, 6)}
-# A higher degree, to twice that, is taken while it moves the edge by less than this share of what the last
-# did: under films of an eighth to a quarter of a half axis 12 leaves 5e-3 p_h beside the end of 3 : 1, 16
-# 5e-4. With 1/2 contacts stay at 12 that need 18, with 1 the edge follows the elements.
-LESS = 0.85
+# A higher degree, to twice that, is taken where it leaves the edge less uncertain; so many worse ones in turn
+# end the search.
+WORSE = 2
 # Size, that on the surface, harmonics and margin of the mesh that tells how far a contact reaches, and the
 # degree there. [test_shaped_contact]
 ROUGH_GRID, ROUGH_DEGREE = (0.6, 0.16, 36, 1.3), 4
@@ -108,7 +107,7 @@ ALLOWED = 3e-3
 
 # --- contacts that are not round: uncertainty [test_shaped_contact]
 SHAPED_COARSER = 1.3  # triangles of the companion over those of the mesh
-LOWER = 2  # by which the degree of the companion's pressure is lowered
+LOWER = 2  # by which the degree of the pressure is raised, and lowered for the companion's fields
 # Times the change of fields from the companion, with the order that is observed beside edges; and that of the
 # pressure and the scalars by the last degree.
 OF_FIELDS = 2.0

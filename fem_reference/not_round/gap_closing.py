@@ -14,6 +14,7 @@ Newton's method: the pressure is linear in its coefficients, and moving the edge
 by  -dp/ds s^(n + 1) cos(n tau) c_n.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -25,6 +26,9 @@ from fem_reference.not_round.harmonic_compliance import HarmonicCompliance
 from fem_reference.not_round.indenter_height import Height
 from fem_reference.not_round.star_contact import Quadrature, StarPressure
 
+# Roache's grid convergence index for two meshes, times the change from the companion: of what the conditions
+# give, with their order, (WEIGHT + 5)/2
+BY_CONDITIONS = chosen.SAFETY / (chosen.SHAPED_COARSER ** ((chosen.WEIGHT + 5) / 2) - 1)
 ADVICE = "; the contact may have a hole or more parts, change the shape or the load"
 
 
@@ -52,22 +56,6 @@ class Closed:
     def of_degree(self, degree: int, height: Height, load: float, last: int) -> "Closed":
         """The contact by a pressure of another degree; arguments as of ``closed``."""
         return closed(self.compliances, self.pressure.of_degree(degree), height, load, last)
-
-    def as_rich_as_helps(self, most: int, height: Height, load: float, last: int) -> tuple["Closed", float]:
-        """The contact by a higher degree, to ``most``, as long as each moves the edge by ``LESS``.
-
-        What elements miss at the edge cannot be closed, and a pressure of too many terms would follow it.
-        Returned with what the last degree moved, see ``moved``.
-        """
-        found, step = self, chosen.LOWER
-        by = found.moved(found.of_degree(found.pressure.degree - step, height, load, last))
-        while found.pressure.degree + step <= most:
-            more = found.of_degree(found.pressure.degree + step, height, load, last)
-            moved = more.moved(found)
-            if not more.converged or moved > chosen.LESS * by:
-                break
-            found, by = more, moved
-        return found, by
 
     def moved(self, other: "Closed") -> float:
         """Change of the contact radius to that of the ``other``, over it, if no part of the edge made up for
@@ -194,6 +182,39 @@ def closed(
         if pressure.reach[1] > one.vertices[-1] or pressure.reach[0] < one.vertices[0]:
             break  # it leaves the mesh
     return Closed(compliances, pressure, delta, steps, size < chosen.EDGE_CLOSE, covariance)
+
+
+@dataclass(frozen=True, eq=False)
+class OnTwoMeshes:
+    """A contact by a pressure of one degree, on the mesh and on its coarser ``companion``."""
+
+    found: Closed
+    companion: Closed
+
+    def uncertain(self, lower: "OnTwoMeshes") -> float:
+        """Uncertainty of the edge over the contact radius, by the mesh and by a ``lower`` degree."""
+        by_degree = chosen.OF_FIELDS * self.found.moved(lower.found)
+        return BY_CONDITIONS * self.found.moved(self.companion) + by_degree
+
+
+def as_rich_as_helps(
+    of_degree: Callable[[int], OnTwoMeshes], least: int, most: int
+) -> tuple[OnTwoMeshes, tuple[OnTwoMeshes, OnTwoMeshes]]:
+    """The contact by that degree of the pressure whose edge is least uncertain, and by two lower ones.
+
+    What elements miss at the edge cannot be closed, and a pressure of too many terms follows it: degrees from
+    ``least`` to ``most`` are tried until ``WORSE`` in turn are more uncertain than the best. Nearest first.
+    """
+    tried = [of_degree(least - below * chosen.LOWER) for below in (2, 1, 0)]
+    best, uncertain = 2, tried[2].uncertain(tried[1])
+    while tried[-1].found.pressure.degree + chosen.LOWER <= most and len(tried) - 1 - best < chosen.WORSE:
+        tried.append(of_degree(tried[-1].found.pressure.degree + chosen.LOWER))
+        if not (tried[-1].found.converged and tried[-1].companion.converged):
+            break
+        more = tried[-1].uncertain(tried[-2])
+        if more < uncertain:
+            best, uncertain = len(tried) - 1, more
+    return tried[best], (tried[best - 1], tried[best - 2])
 
 
 def _power(n: int) -> int:

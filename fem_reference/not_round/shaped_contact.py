@@ -17,7 +17,7 @@ from scipy.ndimage import maximum_filter
 from fem_reference import element_numbers as chosen
 from fem_reference.element_answer import ElementAnswer, ElementPoints, ElementUncertainty
 from fem_reference.meshing.mesh import surface_size
-from fem_reference.not_round.gap_closing import Closed, closed
+from fem_reference.not_round.gap_closing import BY_CONDITIONS, Closed, OnTwoMeshes, as_rich_as_helps, closed
 from fem_reference.not_round.harmonic_compliance import harmonic_compliance
 from fem_reference.not_round.indenter_height import Height, Indenter, touching_shape
 from fem_reference.not_round.off_axis import OffAxisFields, PressedSolid, discretised
@@ -30,10 +30,6 @@ from fem_reference.validation import (
     check_positive,
     check_proportions,
 )
-
-# Roache's grid convergence index for two meshes, times the change from the companion: of what the conditions
-# give, with their order, (WEIGHT + 5)/2
-BY_CONDITIONS = chosen.SAFETY / (chosen.SHAPED_COARSER ** ((chosen.WEIGHT + 5) / 2) - 1)
 
 
 @dataclass(frozen=True)
@@ -74,7 +70,8 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
-    companion : pressure on the companion's mesh of the same degree; its fields have a lower degree
+    companion : pressure on the companion's mesh of the same degree; its fields have the next lower degree
+    lower : pressures on this mesh of the next lower degree and of that below
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
@@ -90,6 +87,7 @@ class ShapedContact(PressedSolid):
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
     companion: StarPressure | None = field(default=None, repr=False)
+    lower: tuple[StarPressure, ...] = field(default=(), repr=False)
     typical: float = 0.0
     opposite: "ShapedContact | None" = field(default=None, repr=False)
     frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
@@ -122,7 +120,9 @@ class ShapedContact(PressedSolid):
         smeared = np.where(np.asarray(points.z) == 0, self._smeared(x, y), 0.0)
         distance = np.hypot(x, y) / (chosen.AXIS_SAFETY[1] * self._units.length)
         safety = chosen.OF_FIELDS * (1 + (chosen.AXIS_SAFETY[0] - 1) * np.maximum(1 - distance, 0))
-        of_pressure = np.where(np.asarray(points.z) == 0, self._uncertain_pressure(x, y, beyond=True), 0.0)
+        # beside an edge the stress along the surface is that of plane strain, -p inside and 2 f p outside
+        moved = (1 + 2 * abs(self._fine.friction)) * self._uncertain_pressure(x, y, beyond=True)
+        of_pressure = np.where(np.asarray(points.z) == 0, moved, 0.0)
         change = np.maximum(safety * U, chosen.OF_FIELDS * self.typical)
         return ElementAnswer(value, np.maximum(change, of_pressure) + self._errors[2] + smeared)
 
@@ -170,36 +170,45 @@ class ShapedContact(PressedSolid):
         if not stated or self._coarse is None or self.companion is None:
             return ElementAnswer(p)
         U = self._uncertain_pressure(points.x, points.y)
-        companion, lower = (self._other(points, one) for one in (self.companion, self._coarse.pressure))
-        here = BY_CONDITIONS * np.abs(p - companion) + chosen.OF_FIELDS * np.abs(companion - lower)
+        here = self._uncertain_by(p, *(self._other(points, one) for one in (self.companion, *self.lower)))
         return ElementAnswer(p, np.maximum(here, U))
+
+    @staticmethod
+    def _uncertain_by(fine: np.ndarray, companion: np.ndarray, *lower: np.ndarray) -> np.ndarray:
+        """Uncertainty by the change from the companion and those from lower degrees."""
+        return np.asarray(
+            BY_CONDITIONS * np.abs(fine - companion) + _by_degree(*(fine - one for one in lower))
+        )
 
     def _uncertain_pressure(self, x: Any, y: Any, beyond: bool = False) -> np.ndarray:
         """Uncertainty of the pressure [Pa] at points as far from the edge as x, y.
 
-        Outside 0, or ``beyond`` what it is as far inside: a pressure that is wrong there moves the stress.
+        Outside 0, or ``beyond`` what it is as far inside, and no less than farther inside: a pressure that is
+        wrong there moves the stress, that of the edge too.
         """
         w, tau = self._fine.pressure.polar(*(np.asarray(v) / self._units.length for v in (x, y)))
         inside = w < (2 if beyond else 1)
         share = np.where(inside, 1 - np.abs(1 - w), 0.0)
-        return np.where(inside, self._changes_inwards(np.stack([share, tau], axis=-1)), 0.0)
+        return np.where(inside, self._changes[int(beyond)](np.stack([share, tau], axis=-1)), 0.0)
 
     @cached_property
-    def _changes_inwards(self) -> RegularGridInterpolator:
-        """Largest change [Pa] near w, tau: by the companion, and by the degree of the pressure.
+    def _changes(self) -> tuple[RegularGridInterpolator, RegularGridInterpolator]:
+        """Largest change [Pa] near w, tau by the companion and by lower degrees; the largest from w = 0 to w.
 
         All at the same w, the share of the way to the own edge. A change at one point may be small by chance:
         within one wave of the polynomial around the contact, and next to w, the largest counts.
         """
-        assert self._coarse is not None
         assert self.companion is not None
-        pressures = self._fine.pressure, self.companion, self._coarse.pressure
+        pressures = self._fine.pressure, self.companion, *self.lower
         w, turn = 1 - np.geomspace(1, 1e-4, 60), np.linspace(0, np.pi, 97)
-        fine, companion, lower = (one(*one.points(w[:, None], turn)) for one in pressures)
-        change = BY_CONDITIONS * np.abs(fine - companion) + chosen.OF_FIELDS * np.abs(companion - lower)
+        change = self._uncertain_by(*(one(*one.points(w[:, None], turn)) for one in pressures))
         wave = 2 * round(turn.size / self._fine.pressure.degree) + 1
         largest = maximum_filter(change, (5, wave), mode=("nearest", "mirror")) * self._units.pressure
-        return RegularGridInterpolator((np.append(w, 1.0), turn), np.vstack([largest, largest[-1:]]))
+        here, inwards = (
+            RegularGridInterpolator((np.append(w, 1.0), turn), np.vstack([one, one[-1:]]))
+            for one in (largest, np.maximum.accumulate(largest))
+        )
+        return here, inwards
 
     def _other(self, points: Any, pressure: StarPressure) -> np.ndarray:
         """Another pressure [Pa] at the points that are compared."""
@@ -325,8 +334,17 @@ def solve_shape(
     unit = Scales(length=reach, pressure=E, modulus=E)
 
     grid = ShapedGrid(size, surface, harmonics, chosen.MARGIN, chosen.DENSITY)
-    poorest = on_mesh(reach, grid, begin.of_degree(least))
-    found, moved = poorest.as_rich_as_helps(most, *arguments(reach, grid))
+    r = chosen.SHAPED_COARSER
+    coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
+    first_found = on_mesh(reach, grid, begin.of_degree(least))
+    first_found.check(shape.scaled(reach), indenter[0])
+    meshes = (first_found, grid), (on_mesh(reach, coarser, first_found.pressure.scaled(1 / reach)), coarser)
+
+    def of_degree(degree: int) -> OnTwoMeshes:
+        return OnTwoMeshes(*(one.of_degree(degree, *arguments(reach, mesh)) for one, mesh in meshes))
+
+    both, lower = as_rich_as_helps(of_degree, least, most)
+    found = both.found
     found.check(shape.scaled(reach), indenter[0])
     numbers, residual = _numbers(found), found.residual(shape.scaled(reach))
     sliding = (friction, -friction)
@@ -334,19 +352,15 @@ def solve_shape(
     coarse: list[OffAxisFields | None] = [None] * len(layers)
     uncertainty, extents, other = None, None, None
     if estimate_uncertainty:
-        r = chosen.SHAPED_COARSER
-        coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
-        start = found.pressure.scaled(1 / reach)
-        companion = on_mesh(reach, coarser, start)
-        fewer = companion.of_degree(found.pressure.degree - chosen.LOWER, *arguments(reach, coarser))
+        companion, fewer = both.companion, lower[0].companion
         other = companion.pressure
         coarse = [_fields(fewer, k, sliding[k], r * surface) for k in range(len(layers))]
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
         # in a change of the area parts of the edge may make up for each other
         change[0] = BY_CONDITIONS * found.moved(companion) * numbers[0]
-        change[1] = max(change[1], chosen.STIFF * (size / default[0]) ** 4 * numbers[1])
-        cut = chosen.OF_FIELDS * np.abs(_numbers(companion) - _numbers(fewer))
-        cut[0] = chosen.OF_FIELDS * moved * numbers[0]
+        change[1] = max(change[1], chosen.STIFF * slender * (size / default[0]) ** 4 * numbers[1])
+        cut = _by_degree(*(numbers - _numbers(one.found) for one in lower))
+        cut[0] = _by_degree(*(np.array(found.moved(one.found)) for one in lower)) * numbers[0]
         left = np.maximum(residual, chosen.OF_FIELDS * found.errors) * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
@@ -356,7 +370,8 @@ def solve_shape(
         )
         total = np.sqrt(sum(part**2 for _, part in parts)) * units
         uncertainty = ElementUncertainty(float(total[0]), float(total[1]), float(total[2]), budget)
-        extents = float(total[3]), float(total[4])
+        # no extent is better known than the contact radius: the edge may be at rest at its ends by chance
+        extents = np.maximum(total[3:], total[0] / numbers[0] * numbers[3:])
     d = fine[0].discretisation
     nodes = np.linspace(0, 2.6 * found.pressure.extents[0], 160)
     sides: list[ShapedContact] = []
@@ -382,9 +397,10 @@ def solve_shape(
                     seconds=time.perf_counter() - began,
                 ),
                 uncertainty=uncertainty,
-                extent_uncertainty=extents,
+                extent_uncertainty=None if extents is None else (float(extents[0]), float(extents[1])),
                 height=shape.height,
                 companion=other,
+                lower=tuple(one.found.pressure for one in lower),
                 typical=_typical(PressedSolid(*pair, unit)) if estimate_uncertainty else 0.0,
                 opposite=sides[0] if sides else None,
             )
@@ -394,6 +410,16 @@ def solve_shape(
 
 def _fields(found: Closed, body: int, friction: float, surface: float) -> OffAxisFields:
     return OffAxisFields.of(found.compliances[body], found.nodal_loads, friction, found.pressure, surface)
+
+
+def _by_degree(*changes: np.ndarray) -> np.ndarray:
+    """Uncertainty of scalars by the changes from the next lower degree and from that below.
+
+    The first may be small by chance; the second, by two steps, counts as it is. At the edge, where the
+    pressure is extrapolated from inside, both count alike.
+    """
+    factors = (chosen.OF_FIELDS, 1.0)
+    return np.max([factor * np.abs(one) for factor, one in zip(factors, changes, strict=False)], axis=0)
 
 
 def _typical(solid: PressedSolid) -> float:
