@@ -13,6 +13,7 @@ from verification.guests.case_exam import exam_path, prepare
 from verification.guests.diagnosis.other_solutions import sampled
 from verification.guests.diagnosis.slip_diagnosis import causes_of
 from verification.guests.exam_subjects import DISC, subject_of
+from verification.judging.verdict import Outcome
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
 from verification.running.case_result import from_json
 from verification.running.checked_files import read_checked
@@ -207,12 +208,17 @@ def test_planted_slips_are_named_exactly_and_no_other(code, sets, share):
     assert not wrong
 
 
-def test_a_slip_under_a_prescribed_load_is_named(tmp_path):
+def test_a_slip_under_a_prescribed_load_is_named_and_one_rough_point_is_not(tmp_path):
     case = subject_of(read_case(shipped_cases()["01_uncoated_steel"]), DISC)
     prepare(case, exam_path(tmp_path, case))
     exam = from_json(read_checked(exam_path(tmp_path, case)))
     values = {(p.quantity, p.line): p.value for p in exam.profiles if p.line != "contact"}
     assert causes_of(case, result_of(case, exam, values), GUEST.name) == ()
+    rough = values["sigma_zz", "axis"].copy()
+    rough[0] += 1.2 * GUEST.claim * case.problem.p_h
+    result = result_of(case, exam, values | {("sigma_zz", "axis"): rough})
+    assert [c.line for c, verdict in result.verdicts if verdict.outcome is Outcome.DISAGREES] == ["axis"]
+    assert causes_of(case, result, GUEST.name) == ()
     wrong = {k: v * 1e-6 if k[0] in PRESSURES else v for k, v in values.items()}
     (cause,) = causes_of(case, result_of(case, exam, wrong), GUEST.name)
     assert "MPa in place of Pa" in cause.message

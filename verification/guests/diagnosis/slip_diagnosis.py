@@ -119,6 +119,8 @@ class Diagnosis:
 
     def causes(self) -> tuple[Cause, ...]:
         """The slips of the best set that explains enough, those that explain most first."""
+        if self._explains(self._misfits([], ())):  # too little to tell: the noise of a mesh at single points
+            return ()
         slips = list(self._slips())
         best = self._best(slips)
         if best is None:
