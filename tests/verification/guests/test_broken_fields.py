@@ -1,5 +1,6 @@
 """A guest with one broken field of each kind: it costs that quantity, and every other one is judged."""
 
+import runpy
 from functools import partial
 
 import numpy as np
@@ -130,3 +131,11 @@ def test_keys_that_are_not_there_or_not_known_cost_no_other(exact, door):
     found = verdicts(case, exam, {k: v for k, v in right.items() if k != "approach"}, door)
     assert [q for q, line in found if found[q, line] != whole[q, line]] == ["approach"]
     assert found["approach", "contact"].outcome is NONE
+
+
+def test_a_failure_inside_a_package_names_the_line_of_the_adapter(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.py").write_text("import numpy as np\n\ndef solve():\n    np.linalg.inv(np.eye(2, 3))\n")
+    with pytest.raises(np.linalg.LinAlgError) as error:
+        runpy.run_path(str(tmp_path / "mine.py"))["solve"]()
+    assert own_python.message(error.value).endswith("(mine.py, line 4)")

@@ -141,8 +141,9 @@ def answered(function: Any, question: dict[str, Any]) -> dict[str, Any]:
 
 
 def message(error: BaseException) -> str:
-    """Type, text, point and last line of an exception."""
-    frame = traceback.extract_tb(error.__traceback__)[-1]
+    """Type, text, point and line of an exception, of the guest's own files where it passed them."""
+    frames = traceback.extract_tb(error.__traceback__)
+    frame = [*frames[-1:], *(f for f in frames if f.filename.startswith(os.getcwd()))][-1]
     where = f"{os.path.basename(frame.filename)}, line {frame.lineno}"
     text = " ".join(str(error).split())[:400] + getattr(error, "place", "")
     return f"{type(error).__name__}: {text} ({where})"
