@@ -56,7 +56,7 @@ class Cause:
 
 @dataclass(frozen=True)
 class Misfit:
-    """What is left of the difference of an answer once slips are made, over the larger of both.
+    """The difference between an answer and what slips make of the exact value, over the larger of both.
 
     opposite : that of the answer of the opposite sign.   agrees : whether it is within what is admissible.
     """
