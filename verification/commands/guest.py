@@ -328,6 +328,8 @@ def _print(found: Examined, seconds: float, page: Path) -> None:
     table = named_table("case", *(o.replace("_", " ").lower() for o in SHOWN), "largest", "s")
     for result in found.results:
         counts = outcome_counts([result])
+        if counts.keys() == {Outcome.UNSUPPORTED}:
+            continue
         worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
         cells = [f"[{STYLE[o]}]{counts[o]}[/]" if counts[o] else "." for o in SHOWN]
         taken = f"{result.seconds:.1f}" if result.seconds else "-"

@@ -1,11 +1,13 @@
 """A guest with one broken field of each kind: it costs that quantity, and every other one is judged."""
 
+import runpy
 from functools import partial
 
 import numpy as np
 import pytest
 from guest_exams import GUEST, prepared, question
 
+from verification.guests.doors import own_python
 from verification.guests.doors.program_door import TimedAnswer
 from verification.guests.doors.serve_function import values_of
 from verification.guests.guest_protocol import VERSION, GuestAnswer
@@ -75,6 +77,8 @@ BROKEN = {
     "approach is NaN": ("approach", lambda v: np.nan, ("approach",), NO, "no finite"),
     "peak pressure is text": ("peak_pressure", lambda v: "high", ("peak_pressure",), NO, "high"),
     "radius is zero": ("contact_radius", lambda v: 0.0, ("contact_radius",), OFF, "exceeds"),
+    "approach is infinite": ("approach", lambda v: np.inf, ("approach",), NO, "no finite"),
+    "displacement is no function": ("displacement", lambda u: 7, DISPLACEMENTS, NO, "callable"),
     "radius in mm": ("contact_radius", lambda v: 1e3 * v, ("contact_radius",), OFF, "exceeds"),
 }
 
@@ -87,20 +91,29 @@ def exact(tmp_path_factory):
     return case, exam, {name: getattr(solution, name) for name in names}
 
 
-def verdicts(case, exam, result):
+def own_environment(result, problem, asked):
+    """The answer of a function in an environment of its own."""
+    return own_python.answered(lambda **given: result, asked.model_dump())
+
+
+def same_environment(result, problem, asked):
+    return plain(vars(values_of(result, problem, asked)))
+
+
+def verdicts(case, exam, result, door):
     asked = question(case, exam)
-    given = plain(vars(values_of(result, case.problem, asked)))
-    answer = GuestAnswer(protocol=VERSION, id=asked.id, **given)
+    answer = GuestAnswer(protocol=VERSION, id=asked.id, **door(result, case.problem, asked))
     found = judged(GUEST, case, exam, [TimedAnswer(answer, 0.0)]).verdicts
     return {(claim.quantity, claim.line): verdict for claim, verdict in found}
 
 
+@pytest.mark.parametrize("door", [same_environment, own_environment])
 @pytest.mark.parametrize("name", BROKEN)
-def test_a_broken_field_costs_its_own_quantities_alone(exact, name):
+def test_a_broken_field_costs_its_own_quantities_alone(exact, name, door):
     case, exam, right = exact
     field, change, quantities, outcome, words = BROKEN[name]
-    whole = verdicts(case, exam, right)
-    found = verdicts(case, exam, right | {field: change(right[field])})
+    whole = verdicts(case, exam, right, door)
+    found = verdicts(case, exam, right | {field: change(right[field])}, door)
     broken = {key for key in found if found[key].outcome is not whole[key].outcome}
     assert broken
     assert {q for q, _ in broken} <= set(quantities)
@@ -108,3 +121,21 @@ def test_a_broken_field_costs_its_own_quantities_alone(exact, name):
     assert all(words in found[key].reason for key in broken)
     agreeing = {q for (q, _), verdict in whole.items() if verdict.outcome is Outcome.AGREES}
     assert {q for q, _ in broken} == agreeing & set(quantities)
+
+
+@pytest.mark.parametrize("door", [same_environment, own_environment])
+def test_keys_that_are_not_there_or_not_known_cost_no_other(exact, door):
+    case, exam, right = exact
+    whole = verdicts(case, exam, right, door)
+    assert verdicts(case, exam, right | {"temperature": 300.0, "mesh": object()}, door) == whole
+    found = verdicts(case, exam, {k: v for k, v in right.items() if k != "approach"}, door)
+    assert [q for q, line in found if found[q, line] != whole[q, line]] == ["approach"]
+    assert found["approach", "contact"].outcome is NONE
+
+
+def test_a_failure_inside_a_package_names_the_line_of_the_adapter(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.py").write_text("import numpy as np\n\ndef solve():\n    np.linalg.inv(np.eye(2, 3))\n")
+    with pytest.raises(np.linalg.LinAlgError) as error:
+        runpy.run_path(str(tmp_path / "mine.py"))["solve"]()
+    assert own_python.message(error.value).endswith("(mine.py, line 4)")

@@ -77,16 +77,22 @@ def sampled(
         place = places.mirror * largest.place / places.stretch + places.shift
         values |= {(PEAKS[0], "contact"): np.array([largest.value]), (PEAKS[1], "contact"): np.array([place])}
     for name in {line for _, line in wanted if line != "contact"} & positions.keys():
-        values |= {
-            (q, name): v for q, v in _on_line(case, problem, solution, name, positions[name], places).items()
-        }
+        asked = {q for q, line in wanted if line == name}
+        found = _on_line(case, problem, solution, name, positions[name], places, asked)
+        values |= {(q, name): v for q, v in found.items()}
     return values
 
 
 def _on_line(
-    case: Subject, problem: CoatedContact, solution: Any, name: str, at: Array, places: WrongPlaces
+    case: Subject,
+    problem: CoatedContact,
+    solution: Any,
+    name: str,
+    at: Array,
+    places: WrongPlaces,
+    asked: Set[str],
 ) -> dict[str, Array]:
-    """Every field on a line; of a layer that the other problem has elsewhere the one at this depth."""
+    """The fields ``asked`` on a line; of a layer that the other problem has elsewhere that at this depth."""
     line = case.line(name)
     x, y, z = line.points(at)
     x = places.mirror * (places.stretch * x - places.shift)
@@ -94,12 +100,13 @@ def _on_line(
     same = problem.seen_from(line.body).interfaces == case.problem.seen_from(line.body).interfaces
     points = Points(x, y, z, line.layer if same and places.stretch == 1 else None, line.body)
     found: dict[str, Array] = {}
-    sigma = solution.sample(points, "stress", False).value
-    found |= {q: sigma[c] for q, c in STRESSES.items()} if sigma is not None else {}
-    if line.depth is None and line.coordinate != "z":
+    if asked & STRESSES.keys():
+        sigma = solution.sample(points, "stress", False).value
+        found |= {q: sigma[c] for q, c in STRESSES.items()} if sigma is not None else {}
+    if asked & set(DISPLACEMENTS) and line.depth is None and line.coordinate != "z":
         u = solution.sample(replace(points, layer=None), "displacement", False).value
         found |= dict(zip(DISPLACEMENTS, u, strict=True)) if u is not None else {}
-    if name == "surface":
+    if name == "surface" and "pressure" in asked:
         found["pressure"] = solution.sample(points, "pressure", False).value
     return {q: places.mirror * v if q in ODD else v for q, v in found.items()}
 

@@ -1,13 +1,13 @@
 """Causes of wrong answers: other problems solved exactly, other places, slips of the output, up to four.
 
 A set of slips is named where it explains every number of the contact that was given and nine tenths of what
-failed, and where none of them can be left out. Of several sets the one with the smallest misfit counts, with
-a price for every slip.
+failed, and where each of them explains nine tenths of what the others leave. Of several sets the one with the
+smallest misfit counts, with a price for every slip.
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
 from itertools import combinations
 from math import log
 
@@ -35,6 +35,7 @@ EDGE = 0.08  # half-width of the zone around the contact edge where nothing is c
 PRICE = 2.0  # of a slip, in the sum of log misfits
 FLOOR = 1e-4  # smallest misfit that counts
 MOST, BEAM = 4, 6  # slips in a set, sets that are extended
+TIE = 0.05  # difference in the sum of log misfits that does not tell sets apart
 PART = 0.1  # of the largest stress on a line
 EXPLAINED = 0.1  # of its misfit may remain at a place
 SHARE = 0.9  # of the failed comparisons that has to be explained
@@ -53,6 +54,19 @@ class Cause:
     places: tuple[Key, ...]
 
 
+@dataclass(frozen=True)
+class Misfit:
+    """The difference between an answer and what slips make of the exact value, over the larger of both.
+
+    opposite : that of the answer of the opposite sign.   agrees : whether it is within what is admissible.
+    """
+
+    size: float
+    opposite: float
+    agrees: bool
+
+
+Misfits = dict[Key, Misfit | None]  # None where slips do not say what becomes of a value
 Slip = WrongInput | WrongPlaces | WrongOutput
 
 
@@ -107,6 +121,17 @@ class Diagnosis:
         return {(claim.quantity, claim.line): claim.cap for claim, _ in self.result.verdicts}
 
     @cached_property
+    def _admissible(self) -> dict[Key, float]:
+        """The largest admissible difference [SI] by place, smaller where the answers are too small."""
+        found = {}
+        for claim, verdict in self.result.verdicts:
+            key = claim.quantity, claim.line
+            if key in self.given and verdict.judged is not None:
+                g, e = (float(np.abs(v[key]).max()) for v in (self.given, self.exact))
+                found[key] = claim.cap * verdict.judged.scale * (min(1.0, g / e) if e else 1.0)
+        return found
+
+    @cached_property
     def wrong(self) -> list[Key]:
         """Marks of the values that differ from the exact one by more than they may."""
         return [
@@ -119,13 +144,15 @@ class Diagnosis:
 
     def causes(self) -> tuple[Cause, ...]:
         """The slips of the best set that explains enough, those that explain most first."""
+        if self._explains(self._misfits([], ())):  # too little to tell: the noise of a mesh at single points
+            return ()
         slips = list(self._slips())
         best = self._best(slips)
         if best is None:
             return ()
         for number in best:
             less = tuple(n for n in best if n != number)
-            if less and self._explains(self._misfits(slips, less)):
+            if less and not self._adds(self._misfits(slips, best), self._misfits(slips, less)):
                 best = less
         found = []
         after = self._misfits(slips, best)
@@ -135,6 +162,12 @@ class Diagnosis:
             slip = slips[number]
             found.append(Cause(slip.name, _message(slip), places))
         return tuple(sorted(found, key=lambda cause: -len(cause.places)))
+
+    def _adds(self, misfits: Misfits, less: Misfits) -> bool:
+        """Whether a set needs a slip, or it explains most of what the others leave, at two places or more."""
+        left = [k for k in self.wrong if less[k] is not None and not self._right(k, less[k])]
+        good = sum(self._right(k, misfits[k]) for k in left)
+        return not self._explains(less) or good >= max(2, SHARE * len(left))
 
     def _best(self, slips: list[Slip]) -> tuple[int, ...] | None:
         """Numbers of the slips of the set of the least cost that explains enough."""
@@ -157,10 +190,17 @@ class Diagnosis:
             beam = sorted(longer, key=lambda one: cost[one])[:BEAM]
             if not beam or cost[beam[0]] >= least:
                 break
-        return min(enough, key=lambda one: (round(cost[one], 6), one), default=None)
+        least = min((cost[one] for one in enough), default=0.0)
+        alike = [one for one in enough if cost[one] <= least + TIE]
+        # What no answer tells apart is a slip of the output: its answers show it.
+        return min(
+            alike,
+            key=lambda one: (sum(not isinstance(slips[n], WrongOutput) for n in one), one),
+            default=None,
+        )
 
-    def _misfits(self, slips: list[Slip], chosen: tuple[int, ...]) -> dict[Key, float | None]:
-        """The misfit at each place if the slips ``chosen`` were made; None where they do not say."""
+    def _misfits(self, slips: list[Slip], chosen: tuple[int, ...]) -> Misfits:
+        """The misfit at each place if the slips ``chosen`` were made."""
         values = self._values(slips, chosen)
         return {k: self._misfit(k, values) for k in self.given}
 
@@ -189,10 +229,10 @@ class Diagnosis:
             found = {}
         return {k: found.get(k, np.full_like(v, np.nan)) for k, v in self.exact.items()}
 
-    def _misfit(self, key: Key, values: Values) -> float | None:
+    def _misfit(self, key: Key, values: Values) -> Misfit | None:
         """|g - p| over the larger of both, off the edge; None where few are known.
 
-        Of a stress over a part of the largest one on its line at least, since a slip may leave it zero.
+        Of a stress over a part of the largest one on its line in both, since a slip may leave it zero.
         """
         g, p = self.given[key], values[key]
         keep = np.isfinite(p) & self._judged.get(key[1], True)
@@ -200,9 +240,11 @@ class Diagnosis:
             return None
         size = max(float(np.linalg.norm(one[keep])) for one in (g, p))
         if key[0] in STRESSES:
-            beside = (values[q, key[1]] for q in STRESSES if (q, key[1]) in values)
-            size = max([size, *(PART * float(np.linalg.norm(np.nan_to_num(one[keep]))) for one in beside)])
-        return float(np.linalg.norm((g - p)[keep])) / size if size else 0.0
+            line = [(q, key[1]) for q in STRESSES if (q, key[1]) in self.given]
+            beside = (np.nan_to_num([of[k][keep] for k in line]) for of in (self.given, values))
+            size = max(size, PART * min(float(np.linalg.norm(one, axis=1).max()) for one in beside))
+        less, more = (float(np.linalg.norm(one[keep])) / (size or 1.0) for one in (g - p, g + p))
+        return Misfit(less, more, float(np.abs(g - p)[keep].max()) <= self._admissible.get(key, 0.0))
 
     @cached_property
     def _judged(self) -> dict[str, NDArray[np.bool_]]:
@@ -211,28 +253,30 @@ class Diagnosis:
         lines = {k: x for k, x in self.positions.items() if k.endswith("surface")}
         return {k: np.abs(np.abs(x) - a) >= zone * a for k, x in lines.items()}
 
-    def _cost(self, misfits: dict[Key, float | None]) -> float:
+    def _cost(self, misfits: Misfits) -> float:
         """Sum of the logarithms of the misfits; one that is not known counts as before."""
         total = 0.0
         for key, misfit in misfits.items():
             floor = max(FLOOR, self.caps.get(key, 0.0) / 3)
-            # An opposite sign is no worse than nothing: it is the next slip to find.
-            total += log(min(max(self._before[key] if misfit is None else misfit, floor), 1.0))
+            now = misfit or self._before[key]
+            # Of the opposite sign is better than of another size: the sign is the next slip to find.
+            total += log(min(max(min(now.size, (1 + now.opposite) / 2), floor), 1.0))
         return total
 
     @cached_property
-    def _before(self) -> dict[Key, float]:
-        return {k: self._misfit(k, self.exact) or 0.0 for k in self.given}
+    def _before(self) -> dict[Key, Misfit]:
+        return {k: self._misfit(k, self.exact) or Misfit(0.0, 0.0, True) for k in self.given}
 
-    def _right(self, key: Key, misfit: float | None) -> bool:
+    def _right(self, key: Key, misfit: Misfit | None) -> bool:
         """Whether a misfit that is left is no error, or a small part of what there was."""
-        return misfit is not None and misfit <= max(EXPLAINED * self._before[key], self.caps.get(key, 0.0))
+        small = max(EXPLAINED * self._before[key].size, self.caps.get(key, 0.0))
+        return misfit is not None and (misfit.agrees or misfit.size <= small)
 
-    def _spoils(self, key: Key, misfit: float) -> bool:
+    def _spoils(self, key: Key, misfit: Misfit) -> bool:
         """Whether a right answer is further from what the slips say than from the exact value."""
-        return not self._right(key, misfit) and misfit > 2 * self._before[key]
+        return not self._right(key, misfit) and misfit.size > 2 * self._before[key].size
 
-    def _explains(self, misfits: dict[Key, float | None]) -> bool:
+    def _explains(self, misfits: Misfits) -> bool:
         """Whether every number of the contact and enough of what failed is explained."""
         judged = {k: self._right(k, m) for k, m in misfits.items() if m is not None}
         failed = [k for k in self.wrong if k in judged]
@@ -245,7 +289,10 @@ class Diagnosis:
 
     def _slips(self) -> Iterator[Slip]:
         """In the order in which they act: of the input, of the places, of the output."""
-        inputs = self._inputs()
+        inputs: list[WrongInput] = []
+        loads: list[WrongInput] = []
+        for one in self._inputs():
+            (loads if self.case.load != SPHERE and self._of_load(one) else inputs).append(one)
         yield from inputs
         a, p = exact_radius(self.result), self.case.problem
         if p.friction:
@@ -263,6 +310,14 @@ class Diagnosis:
         along = ((line, x) for line, x in self.positions.items() if line != "contact")
         points = {line: self.case.line(line).points(x)[:2] for line, x in along}
         yield from wrong_outputs(self.exact, self.given, points)
+        # Under a prescribed load every answer is proportional to it.
+        for one in loads:
+            yield WrongOutput(one.name, partial(_times, one.problem.load / p.load), _message(one))
+
+    def _of_load(self, one: WrongInput) -> bool:
+        """Whether only the load is another one."""
+        p = self.case.problem
+        return replace(one.problem, load=p.load) == p
 
     def _inputs(self) -> list[WrongInput]:
         """At most a few other problems whose numbers are like the answers, but for a factor."""
@@ -307,6 +362,10 @@ def _rest_of_factor(quantity: str, given: float, found: float) -> float:
     units = (1.0, *UNITS.get(unit_of(quantity), {}))
     own = (1.0, *(abs(factor) for name, factor in NUMBERS.values() if name == quantity))
     return min(abs(log(abs(given / found) / (u * f))) for u in units for f in own)
+
+
+def _times(factor: float, values: Values) -> Values:
+    return {k: factor * v for k, v in values.items()}
 
 
 def _exclusive(one: Slip, other: Slip) -> bool:

@@ -55,21 +55,42 @@ def field(result: Any, name: str, x: Any, y: Any, z: Any, layers: list[int]) -> 
     function = result.get(name) if isinstance(result, dict) else getattr(result, name, None)
     if function is None:
         return None
-    shape = COMPONENTS[name][0]
-    found = np.empty((*shape, x.size))
+    found = np.empty((*COMPONENTS[name][0], x.size))
     for layer in sorted(set(layers)):
-        at = np.array(layers) == layer
-        of = {"layer": layer} if "layer" in inspect.signature(function).parameters else {}
-        value = function(x[at], y[at]) if name == "pressure" else function(x[at], y[at], z[at], **of)
+        at = np.flatnonzero(np.array(layers) == layer)
+        try:
+            value = at_points(function, name, x[at], y[at], z[at], layer)
+        except NotImplementedError:
+            raise
+        except Exception as error:
+            error.place = first_point(function, name, x[at], y[at], z[at], layer)  # type: ignore[attr-defined]
+            raise
         if value is None:
             return None
-        value = np.asarray(value, dtype=float)
-        if value.shape != (*shape, at.sum()):
-            raise ValueError(
-                f"{name} returns an array of shape {value.shape}; {(*shape, int(at.sum()))} is needed"
-            )
         found[..., at] = value
     return found
+
+
+def at_points(function: Any, name: str, x: Any, y: Any, z: Any, layer: int) -> Any:
+    """Values of a function of the result at points of one layer, checked; None where it gives none."""
+    of = {"layer": layer} if "layer" in inspect.signature(function).parameters else {}
+    value = function(x, y) if name == "pressure" else function(x, y, z, **of)
+    if value is None:
+        return None
+    value, shape = np.asarray(value, dtype=float), (*COMPONENTS[name][0], x.size)
+    if value.shape != shape:
+        raise ValueError(f"{name} returns an array of shape {value.shape}; {shape} is needed")
+    return value
+
+
+def first_point(function: Any, name: str, x: Any, y: Any, z: Any, layer: int) -> str:
+    """The first of several points, at which a function fails by itself; "" where it fails at none."""
+    for i in range(x.size if x.size > 1 else 0):
+        try:
+            at_points(function, name, x[i : i + 1], y[i : i + 1], z[i : i + 1], layer)
+        except Exception:
+            return f", first at x, y, z = {x[i]:.4g}, {y[i]:.4g}, {z[i]:.4g}"
+    return ""
 
 
 def largest_tension(result: Any, question: dict[str, Any]) -> dict[str, float]:
@@ -120,10 +141,12 @@ def answered(function: Any, question: dict[str, Any]) -> dict[str, Any]:
 
 
 def message(error: BaseException) -> str:
-    """Type, text and last line of an exception."""
-    frame = traceback.extract_tb(error.__traceback__)[-1]
+    """Type, text, point and line of an exception, of the guest's own files where it passed them."""
+    frames = traceback.extract_tb(error.__traceback__)
+    frame = [*frames[-1:], *(f for f in frames if f.filename.startswith(os.getcwd()))][-1]
     where = f"{os.path.basename(frame.filename)}, line {frame.lineno}"
-    return f"{type(error).__name__}: {' '.join(str(error).split())[:400]} ({where})"
+    text = " ".join(str(error).split())[:400] + getattr(error, "place", "")
+    return f"{type(error).__name__}: {text} ({where})"
 
 
 def main(place: str) -> None:

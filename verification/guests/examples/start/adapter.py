@@ -4,7 +4,10 @@ import numpy as np
 
 
 def solve(radius, load, substrate, coatings=(), friction=0.0):
-    """The contact of a rigid sphere; SI units, coatings from the surface down as (E, nu, thickness)."""
+    """The contact of a rigid sphere; SI units, coatings from the surface down as (E, nu, thickness).
+
+    raise NotImplementedError("why") where the code does not solve a problem.
+    """
     E, nu = substrate
     E_star = E / (1 - nu**2)
     a = (3 * load * radius / (4 * E_star)) ** (1 / 3)
