@@ -70,7 +70,7 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
-    companion : pressure on the companion's mesh of the same degree; its fields have the next lower degree
+    companion : pressure on the companion's mesh of the same degree; its fields have the lowest of ``lower``
     lower : pressures on this mesh of the next lower degree and of that below
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
@@ -352,7 +352,7 @@ def solve_shape(
     coarse: list[OffAxisFields | None] = [None] * len(layers)
     uncertainty, extents, other = None, None, None
     if estimate_uncertainty:
-        companion, fewer = both.companion, lower[0].companion
+        companion, fewer = both.companion, lower[1].companion
         other = companion.pressure
         coarse = [_fields(fewer, k, sliding[k], r * surface) for k in range(len(layers))]
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
