@@ -31,7 +31,7 @@ def under_ellipse(axes, *, friction=0.0, harmonics=8, size=0.3):
 
 
 def test_meshes_beyond_the_memory_are_refused_before_they_are_solved():
-    with pytest.raises(ElementsNotConverged, match="200000 nodes in 1[0-9] harmonics.*thicker films"):
+    with pytest.raises(ElementsNotConverged, match=r"200000 nodes in 1[0-9] harmonics.*thicker films"):
         harmonic_compliance(SOLID, SimpleNamespace(N=200_000), 240, 2)
 
 
