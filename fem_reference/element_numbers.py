@@ -81,6 +81,9 @@ DIRECT = 8  # harmonics below are solved one by one
 # What is left of a harmonic m >= 2, which falls as the power m + 1 of the distance from the axis in contact
 # radii, where it is taken as zero
 VANISHED = 2e-6
+# Nodes of the mesh times solutions, factorised and kept: 8e5 take some 5 GB, the companion's 3 more. Films of
+# a hundredth of a long contact need more.
+MOST_KEPT = 8e5
 # Points of the interpolation beyond for a factor e of m: 5 change no stress by 1e-5 p_h, 2.8 by 2e-3.
 DENSITY = 3.1
 FULL = 0.4  # of the harmonics count in full in a stress, those beyond ever less
@@ -107,7 +110,6 @@ ALLOWED = 3e-3
 
 # --- contacts that are not round: uncertainty [test_shaped_contact]
 SHAPED_COARSER = 1.3  # triangles of the companion over those of the mesh
-LOWER = 2  # by which the degree of the pressure is raised, and lowered for the companion's fields
 # Times the change of fields from the companion, with the order that is observed beside edges; and that of the
 # pressure and the scalars by the last degree.
 OF_FIELDS = 2.0

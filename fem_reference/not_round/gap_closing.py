@@ -205,10 +205,10 @@ def as_rich_as_helps(
     What elements miss at the edge cannot be closed, and a pressure of too many terms follows it: degrees from
     ``least`` to ``most`` are tried until ``WORSE`` in turn are more uncertain than the best. Nearest first.
     """
-    tried = [of_degree(least - below * chosen.LOWER) for below in (2, 1, 0)]
+    tried = [of_degree(least - below) for below in (4, 2, 0)]
     best, uncertain = 2, tried[2].uncertain(tried[1])
-    while tried[-1].found.pressure.degree + chosen.LOWER <= most and len(tried) - 1 - best < chosen.WORSE:
-        tried.append(of_degree(tried[-1].found.pressure.degree + chosen.LOWER))
+    while tried[-1].found.pressure.degree + 2 <= most and len(tried) - 1 - best < chosen.WORSE:
+        tried.append(of_degree(tried[-1].found.pressure.degree + 2))
         if not (tried[-1].found.converged and tried[-1].companion.converged):
             break
         more = tried[-1].uncertain(tried[-2])

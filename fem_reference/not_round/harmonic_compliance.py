@@ -27,6 +27,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from fem_reference import element_numbers as chosen
+from fem_reference.contact.levels import ElementsNotConverged
 from fem_reference.elasticity.axisymmetric import Discretisation, Skeleton
 from fem_reference.elasticity.linear_system import ConstrainedFactor
 from fem_reference.scaling import LayeredSolid
@@ -149,10 +150,15 @@ def harmonic_compliance(
 ) -> HarmonicCompliance:
     """Compliance to pressures between the radius ``inner`` and the mesh's contact radius.
 
-    Of harmonics 0, fold, .. to ``last``
+    Of harmonics 0, fold, .. to ``last``. Raises ElementsNotConverged where these take too much memory.
     """
     wanted = range(0, last + 1, fold)
     solved = (*(m for m in wanted if m < chosen.DIRECT), *_high(last + 1, density))
+    if d.N * len(solved) > chosen.MOST_KEPT:
+        raise ElementsNotConverged(
+            f"films so thin below a contact so long need {d.N} nodes in {len(solved)} harmonics, together "
+            f"beyond {chosen.MOST_KEPT:g}; give thicker films, or leave this contact to the patches alone"
+        )
     first = np.searchsorted(d.contact_vertices, inner, side="right") - 1
     loaded = d.contact[d.order * first :]
     meridians = tuple(Meridian.of(solid, d, m, loaded) for m in solved)

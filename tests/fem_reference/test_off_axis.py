@@ -1,8 +1,12 @@
 """Pressures without symmetry, harmonic by harmonic."""
 
+from types import SimpleNamespace
+
 import numpy as np
+import pytest
 
 from fem_reference import solve_prescribed
+from fem_reference.contact.levels import ElementsNotConverged
 from fem_reference.elasticity.loading import solve_traction
 from fem_reference.not_round.gap_closing import Closed
 from fem_reference.not_round.harmonic_compliance import harmonic_compliance
@@ -24,6 +28,11 @@ def under_ellipse(axes, *, friction=0.0, harmonics=8, size=0.3):
     found = Closed((compliance,), pressure, 1.0, 0, True, np.zeros((0, 0)))
     fields = OffAxisFields.of(compliance, found.nodal_loads, friction, pressure, size / 2)
     return PressedSolid(fields, None, Scales(length=A, pressure=E, modulus=E))
+
+
+def test_meshes_beyond_the_memory_are_refused_before_they_are_solved():
+    with pytest.raises(ElementsNotConverged, match=r"200000 nodes in 1[0-9] harmonics.*thicker films"):
+        harmonic_compliance(SOLID, SimpleNamespace(N=200_000), 240, 2)
 
 
 def test_a_round_pressure_has_the_fields_of_harmonics_0_and_1():
