@@ -203,9 +203,9 @@ def as_rich_as_helps(
     """The contact by that degree of the pressure whose edge is least uncertain, and by two lower ones.
 
     What elements miss at the edge cannot be closed, and a pressure of too many terms follows it: degrees from
-    ``least`` to ``most`` are tried until ``WORSE`` in turn are more uncertain than the best. Nearest first.
+    ``least`` + 4 to ``most`` are tried until ``WORSE`` in turn are worse than the best. Nearest first.
     """
-    tried = [of_degree(least - below) for below in (4, 2, 0)]
+    tried = [of_degree(least + more) for more in (0, 2, 4)]
     best, uncertain = 2, tried[2].uncertain(tried[1])
     while tried[-1].found.pressure.degree + 2 <= most and len(tried) - 1 - best < chosen.WORSE:
         tried.append(of_degree(tried[-1].found.pressure.degree + 2))

@@ -70,8 +70,8 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
-    companion : pressure on the companion's mesh of the same degree; its fields have the lowest of ``lower``
-    lower : pressures on this mesh of the next lower degree and of that below
+    companion : pressure on the companion's mesh of the same degree; its fields have the next lower degree
+    lower : pressure on this mesh of that degree
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
@@ -87,7 +87,7 @@ class ShapedContact(PressedSolid):
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
     companion: StarPressure | None = field(default=None, repr=False)
-    lower: tuple[StarPressure, ...] = field(default=(), repr=False)
+    lower: StarPressure | None = field(default=None, repr=False)
     typical: float = 0.0
     opposite: "ShapedContact | None" = field(default=None, repr=False)
     frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
@@ -121,8 +121,12 @@ class ShapedContact(PressedSolid):
         distance = np.hypot(x, y) / (chosen.AXIS_SAFETY[1] * self._units.length)
         safety = chosen.OF_FIELDS * (1 + (chosen.AXIS_SAFETY[0] - 1) * np.maximum(1 - distance, 0))
         # beside an edge the stress along the surface is that of plane strain, -p inside and 2 f p outside
-        moved = (1 + 2 * abs(self._fine.friction)) * self._uncertain_pressure(x, y, beyond=True)
-        of_pressure = np.where(np.asarray(points.z) == 0, moved, 0.0)
+        moved = np.where(
+            np.asarray(points.z) == 0,
+            self._uncertain_pressure(x, y, beyond=True),
+            self._beside_edge(x, y, points.z),
+        )
+        of_pressure = (1 + 2 * abs(self._fine.friction)) * moved
         change = np.maximum(safety * U, chosen.OF_FIELDS * self.typical)
         return ElementAnswer(value, np.maximum(change, of_pressure) + self._errors[2] + smeared)
 
@@ -167,18 +171,16 @@ class ShapedContact(PressedSolid):
     def _pressure(self, points: Any, stated: bool) -> ElementAnswer:
         """Pressure [Pa], uncertain by the changes as far from the edge and, at fixed points, there too."""
         p = self._given(points)
-        if not stated or self._coarse is None or self.companion is None:
+        if not stated or self.companion is None or self.lower is None:
             return ElementAnswer(p)
         U = self._uncertain_pressure(points.x, points.y)
-        here = self._uncertain_by(p, *(self._other(points, one) for one in (self.companion, *self.lower)))
+        here = self._uncertain_by(p, *(self._other(points, one) for one in (self.companion, self.lower)))
         return ElementAnswer(p, np.maximum(here, U))
 
     @staticmethod
-    def _uncertain_by(fine: np.ndarray, companion: np.ndarray, *lower: np.ndarray) -> np.ndarray:
-        """Uncertainty by the change from the companion and those from lower degrees."""
-        return np.asarray(
-            BY_CONDITIONS * np.abs(fine - companion) + _by_degree(*(fine - one for one in lower))
-        )
+    def _uncertain_by(fine: np.ndarray, companion: np.ndarray, lower: np.ndarray) -> np.ndarray:
+        """Uncertainty by the change from the companion and that from a lower degree."""
+        return np.asarray(BY_CONDITIONS * np.abs(fine - companion) + chosen.OF_FIELDS * np.abs(fine - lower))
 
     def _uncertain_pressure(self, x: Any, y: Any, beyond: bool = False) -> np.ndarray:
         """Uncertainty of the pressure [Pa] at points as far from the edge as x, y.
@@ -196,12 +198,16 @@ class ShapedContact(PressedSolid):
         """Largest change [Pa] near w, tau by the companion and by lower degrees; the largest from w = 0 to w.
 
         All at the same w, the share of the way to the own edge. A change at one point may be small by chance:
-        within one wave of the polynomial around the contact, and next to w, the largest counts.
+        within one wave of the polynomial around the contact, and next to w, the largest counts; nearer to the
+        edge than its last wave, where no condition holds the pressure, the largest around the contact.
         """
         assert self.companion is not None
-        pressures = self._fine.pressure, self.companion, *self.lower
+        assert self.lower is not None
+        pressures = self._fine.pressure, self.companion, self.lower
         w, turn = 1 - np.geomspace(1, 1e-4, 60), np.linspace(0, np.pi, 97)
         change = self._uncertain_by(*(one(*one.points(w[:, None], turn)) for one in pressures))
+        last = w > 1 - self._last_wave
+        change[last] = change[last].max(axis=1, keepdims=True)
         wave = 2 * round(turn.size / self._fine.pressure.degree) + 1
         largest = maximum_filter(change, (5, wave), mode=("nearest", "mirror")) * self._units.pressure
         here, inwards = (
@@ -209,6 +215,26 @@ class ShapedContact(PressedSolid):
             for one in (largest, np.maximum.accumulate(largest))
         )
         return here, inwards
+
+    @property
+    def _last_wave(self) -> float:
+        """Width 1 - w of the last wave of the pressure's polynomials before the edge, T_(D/2)(2 w^2 - 1)."""
+        return float(1 - np.cos(np.pi / self._fine.pressure.degree))
+
+    def _beside_edge(self, x: Any, y: Any, z: Any) -> np.ndarray:
+        """Stress [Pa] at a depth by an uncertain pressure on the last wave, without a resultant.
+
+        So of two line loads p d at a distance d: 2 p (d/rho)^2/pi, by K. L. Johnson, Contact Mechanics, equation
+        2.15; rho from the edge, along the surface towards the centre.
+        """
+        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) / self._units.length for v in (x, y, z)))
+        w, tau = self._fine.pressure.polar(x, y)
+        centre = self._fine.pressure.centre
+        to_edge = np.hypot(np.abs(x) - centre, y) / np.maximum(w, 1e-9)
+        rho = np.hypot((1 - w) * to_edge, z)
+        p = self._changes[1](np.stack([np.ones(w.shape), tau], axis=-1))
+        share = 2 / np.pi * (self._last_wave * to_edge / np.maximum(rho, 1e-9)) ** 2
+        return np.asarray(p * np.where(z > 0, np.minimum(share, 1), 0.0))
 
     def _other(self, points: Any, pressure: StarPressure) -> np.ndarray:
         """Another pressure [Pa] at the points that are compared."""
@@ -279,8 +305,8 @@ def solve_shape(
     begin = StarPressure.of_ellipse(
         shape.centre, (first * axes[0], first * axes[1]), load / E, shape.fold, chosen.ROUGH_DEGREE
     )
-    least = usual[3] * waves if degree is None else degree
-    most = 2 * least if degree is None else degree
+    first_degree = usual[3] * waves if degree is None else degree
+    least, most = (max(first_degree - 8, 4), 2 * first_degree) if degree is None else (degree - 4, degree)
 
     def solids(reach: float) -> tuple[LayeredSolid, ...]:
         scaled = tuple(LayeredSolid.scaled(*one, reach, far, E) for one in layers)
@@ -336,7 +362,7 @@ def solve_shape(
     grid = ShapedGrid(size, surface, harmonics, chosen.MARGIN, chosen.DENSITY)
     r = chosen.SHAPED_COARSER
     coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
-    first_found = on_mesh(reach, grid, begin.of_degree(least))
+    first_found = on_mesh(reach, grid, begin.of_degree(first_degree))
     first_found.check(shape.scaled(reach), indenter[0])
     meshes = (first_found, grid), (on_mesh(reach, coarser, first_found.pressure.scaled(1 / reach)), coarser)
 
@@ -352,7 +378,7 @@ def solve_shape(
     coarse: list[OffAxisFields | None] = [None] * len(layers)
     uncertainty, extents, other = None, None, None
     if estimate_uncertainty:
-        companion, fewer = both.companion, lower[1].companion
+        companion, fewer = both.companion, lower[0].companion
         other = companion.pressure
         coarse = [_fields(fewer, k, sliding[k], r * surface) for k in range(len(layers))]
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
@@ -400,7 +426,7 @@ def solve_shape(
                 extent_uncertainty=None if extents is None else (float(extents[0]), float(extents[1])),
                 height=shape.height,
                 companion=other,
-                lower=tuple(one.found.pressure for one in lower),
+                lower=lower[0].found.pressure,
                 typical=_typical(PressedSolid(*pair, unit)) if estimate_uncertainty else 0.0,
                 opposite=sides[0] if sides else None,
             )
@@ -415,8 +441,7 @@ def _fields(found: Closed, body: int, friction: float, surface: float) -> OffAxi
 def _by_degree(*changes: np.ndarray) -> np.ndarray:
     """Uncertainty of scalars by the changes from the next lower degree and from that below.
 
-    The first may be small by chance; the second, by two steps, counts as it is. At the edge, where the
-    pressure is extrapolated from inside, both count alike.
+    The first may be small by chance; the second, by two steps, counts as it is.
     """
     factors = (chosen.OF_FIELDS, 1.0)
     return np.max([factor * np.abs(one) for factor, one in zip(factors, changes, strict=False)], axis=0)
