@@ -199,14 +199,14 @@ class OnTwoMeshes:
 
 def as_rich_as_helps(
     of_degree: Callable[[int], OnTwoMeshes], least: int, most: int
-) -> tuple[OnTwoMeshes, tuple[OnTwoMeshes, OnTwoMeshes]]:
-    """The contact by that degree of the pressure whose edge is least uncertain, and by two lower ones.
+) -> tuple[OnTwoMeshes, OnTwoMeshes]:
+    """The contact by that degree of the pressure whose edge is least uncertain, and by the next lower one.
 
     What elements miss at the edge cannot be closed, and a pressure of too many terms follows it: degrees from
-    ``least`` + 4 to ``most`` are tried until ``WORSE`` in turn are worse than the best. Nearest first.
+    ``least`` + 2 to ``most`` are tried until ``WORSE`` in turn are worse than the best.
     """
-    tried = [of_degree(least + more) for more in (0, 2, 4)]
-    best, uncertain = 2, tried[2].uncertain(tried[1])
+    tried = [of_degree(least), of_degree(least + 2)]
+    best, uncertain = 1, tried[1].uncertain(tried[0])
     while tried[-1].found.pressure.degree + 2 <= most and len(tried) - 1 - best < chosen.WORSE:
         tried.append(of_degree(tried[-1].found.pressure.degree + 2))
         if not (tried[-1].found.converged and tried[-1].companion.converged):
@@ -214,7 +214,7 @@ def as_rich_as_helps(
         more = tried[-1].uncertain(tried[-2])
         if more < uncertain:
             best, uncertain = len(tried) - 1, more
-    return tried[best], (tried[best - 1], tried[best - 2])
+    return tried[best], tried[best - 1]
 
 
 def _power(n: int) -> int:

@@ -206,10 +206,10 @@ class ShapedContact(PressedSolid):
         pressures = self._fine.pressure, self.companion, self.lower
         w, turn = 1 - np.geomspace(1, 1e-4, 60), np.linspace(0, np.pi, 97)
         change = self._uncertain_by(*(one(*one.points(w[:, None], turn)) for one in pressures))
-        last = w > 1 - self._last_wave
-        change[last] = change[last].max(axis=1, keepdims=True)
         wave = 2 * round(turn.size / self._fine.pressure.degree) + 1
         largest = maximum_filter(change, (5, wave), mode=("nearest", "mirror")) * self._units.pressure
+        last = w > 1 - self._last_wave
+        largest[last] = largest[last].max(axis=1, keepdims=True)
         here, inwards = (
             RegularGridInterpolator((np.append(w, 1.0), turn), np.vstack([one, one[-1:]]))
             for one in (largest, np.maximum.accumulate(largest))
@@ -222,10 +222,10 @@ class ShapedContact(PressedSolid):
         return float(1 - np.cos(np.pi / self._fine.pressure.degree))
 
     def _beside_edge(self, x: Any, y: Any, z: Any) -> np.ndarray:
-        """Stress [Pa] at a depth by an uncertain pressure on the last wave, without a resultant.
+        """Stress [Pa] at a depth by an uncertain pressure on the last wave, which has no resultant.
 
-        So of two line loads p d at a distance d: 2 p (d/rho)^2/pi, by K. L. Johnson, Contact Mechanics, equation
-        2.15; rho from the edge, along the surface towards the centre.
+        So of two line loads p d at a distance d: 2 p (d/rho)^2/pi, by K. L. Johnson, Contact Mechanics,
+        equation 2.15; rho from the edge, along the surface towards the centre.
         """
         x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) / self._units.length for v in (x, y, z)))
         w, tau = self._fine.pressure.polar(x, y)
@@ -306,7 +306,7 @@ def solve_shape(
         shape.centre, (first * axes[0], first * axes[1]), load / E, shape.fold, chosen.ROUGH_DEGREE
     )
     first_degree = usual[3] * waves if degree is None else degree
-    least, most = (max(first_degree - 8, 4), 2 * first_degree) if degree is None else (degree - 4, degree)
+    least, most = (max(first_degree - 6, 4), 2 * first_degree) if degree is None else (degree - 2, degree)
 
     def solids(reach: float) -> tuple[LayeredSolid, ...]:
         scaled = tuple(LayeredSolid.scaled(*one, reach, far, E) for one in layers)
@@ -378,15 +378,15 @@ def solve_shape(
     coarse: list[OffAxisFields | None] = [None] * len(layers)
     uncertainty, extents, other = None, None, None
     if estimate_uncertainty:
-        companion, fewer = both.companion, lower[0].companion
+        companion, fewer = both.companion, lower.companion
         other = companion.pressure
         coarse = [_fields(fewer, k, sliding[k], r * surface) for k in range(len(layers))]
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
         # in a change of the area parts of the edge may make up for each other
         change[0] = BY_CONDITIONS * found.moved(companion) * numbers[0]
         change[1] = max(change[1], chosen.STIFF * slender * (size / default[0]) ** 4 * numbers[1])
-        cut = _by_degree(*(numbers - _numbers(one.found) for one in lower))
-        cut[0] = _by_degree(*(np.array(found.moved(one.found)) for one in lower)) * numbers[0]
+        cut = chosen.OF_FIELDS * np.abs(numbers - _numbers(lower.found))
+        cut[0] = chosen.OF_FIELDS * found.moved(lower.found) * numbers[0]
         left = np.maximum(residual, chosen.OF_FIELDS * found.errors) * np.abs(numbers)
         units = np.array([reach, reach, E, reach, reach])
         names = ("contact_radius", "approach", "peak_pressure")
@@ -426,7 +426,7 @@ def solve_shape(
                 extent_uncertainty=None if extents is None else (float(extents[0]), float(extents[1])),
                 height=shape.height,
                 companion=other,
-                lower=lower[0].found.pressure,
+                lower=lower.found.pressure,
                 typical=_typical(PressedSolid(*pair, unit)) if estimate_uncertainty else 0.0,
                 opposite=sides[0] if sides else None,
             )
@@ -436,15 +436,6 @@ def solve_shape(
 
 def _fields(found: Closed, body: int, friction: float, surface: float) -> OffAxisFields:
     return OffAxisFields.of(found.compliances[body], found.nodal_loads, friction, found.pressure, surface)
-
-
-def _by_degree(*changes: np.ndarray) -> np.ndarray:
-    """Uncertainty of scalars by the changes from the next lower degree and from that below.
-
-    The first may be small by chance; the second, by two steps, counts as it is.
-    """
-    factors = (chosen.OF_FIELDS, 1.0)
-    return np.max([factor * np.abs(one) for factor, one in zip(factors, changes, strict=False)], axis=0)
 
 
 def _typical(solid: PressedSolid) -> float:
