@@ -63,8 +63,8 @@ SURFACE_LEAST, SURFACE_RATE, BURIED_RATE = 1 / 24, 11.0, 7.5
 # Size of the triangles, of those on the surface, harmonics, degree of the polynomial in the pressure over the
 # number of waves around, which counts as 2 at least. [test_shaped_contact]
 SHAPED_QUALITY = {"fast": (0.5, 0.12, 120, 4), "default": (0.44, 0.045, 240, 6), "fine": (0.4, 0.035, 288, 6)}
-# Another degree, from 8 to twice that, is taken where it leaves the edge less uncertain; so many worse ones
-# in turn end the search.
+# A higher degree, to twice that, is taken where it leaves the edge less uncertain; so many worse ones in turn
+# end the search.
 WORSE = 2
 # Size, that on the surface, harmonics and margin of the mesh that tells how far a contact reaches, and the
 # degree there. [test_shaped_contact]

@@ -305,8 +305,8 @@ def solve_shape(
     begin = StarPressure.of_ellipse(
         shape.centre, (first * axes[0], first * axes[1]), load / E, shape.fold, chosen.ROUGH_DEGREE
     )
-    first_degree = usual[3] * waves if degree is None else degree
-    least, most = (max(first_degree - 6, 4), 2 * first_degree) if degree is None else (degree - 2, degree)
+    least = usual[3] * waves if degree is None else degree
+    most = 2 * least if degree is None else degree
 
     def solids(reach: float) -> tuple[LayeredSolid, ...]:
         scaled = tuple(LayeredSolid.scaled(*one, reach, far, E) for one in layers)
@@ -362,7 +362,7 @@ def solve_shape(
     grid = ShapedGrid(size, surface, harmonics, chosen.MARGIN, chosen.DENSITY)
     r = chosen.SHAPED_COARSER
     coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
-    first_found = on_mesh(reach, grid, begin.of_degree(first_degree))
+    first_found = on_mesh(reach, grid, begin.of_degree(least))
     first_found.check(shape.scaled(reach), indenter[0])
     meshes = (first_found, grid), (on_mesh(reach, coarser, first_found.pressure.scaled(1 / reach)), coarser)
 
