@@ -314,8 +314,8 @@ def _unverified(material: ReportMaterial) -> list[str]:
         "solved.",
         "Residual stress, temperature, graded coatings, strengths and critical loads: coatcheck solve and "
         "study add them to the stresses, without a second method.",
-        "Ellipses on films that are thin beside their short half axis: of those drawn at random some "
-        "disagree (manual, Uncertainty and verdict).",
+        "Ellipses on films that are thin beside their short half axis: the elements are so uncertain there "
+        "that much is inconclusive (manual, Uncertainty and verdict).",
         "Stress, friction and shape of the contact in an experiment."
         if material.evidence.validation
         else "Any experiment.",
