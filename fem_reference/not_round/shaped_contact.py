@@ -11,8 +11,6 @@ from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator
-from scipy.ndimage import maximum_filter
 
 from fem_reference import element_numbers as chosen
 from fem_reference.element_answer import ElementAnswer, ElementPoints, ElementUncertainty
@@ -22,6 +20,7 @@ from fem_reference.not_round.harmonic_compliance import harmonic_compliance
 from fem_reference.not_round.indenter_height import Height, Indenter, touching_shape
 from fem_reference.not_round.off_axis import OffAxisFields, PressedSolid, discretised
 from fem_reference.not_round.star_contact import StarPressure, hertz_axes
+from fem_reference.not_round.star_estimate import StarEstimate, uncertain_by
 from fem_reference.scaling import Coatings, LayeredSolid, Scales
 from fem_reference.validation import (
     check_ball,
@@ -70,8 +69,7 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
-    companion : pressure on the companion's mesh of the same degree; its fields have the next lower degree
-    lower : pressure on this mesh of that degree
+    estimate : of the pressure; the fields of the companion have its lower degree
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
@@ -86,8 +84,7 @@ class ShapedContact(PressedSolid):
     uncertainty: ElementUncertainty | None
     extent_uncertainty: tuple[float, float] | None
     height: Height = field(repr=False)
-    companion: StarPressure | None = field(default=None, repr=False)
-    lower: StarPressure | None = field(default=None, repr=False)
+    estimate: StarEstimate | None = field(default=None, repr=False)
     typical: float = 0.0
     opposite: "ShapedContact | None" = field(default=None, repr=False)
     frames: ClassVar = ("fixed", "edge")  # in which uncertainties are estimated
@@ -121,12 +118,7 @@ class ShapedContact(PressedSolid):
         distance = np.hypot(x, y) / (chosen.AXIS_SAFETY[1] * self._units.length)
         safety = chosen.OF_FIELDS * (1 + (chosen.AXIS_SAFETY[0] - 1) * np.maximum(1 - distance, 0))
         # beside an edge the stress along the surface is that of plane strain, -p inside and 2 f p outside
-        moved = np.where(
-            np.asarray(points.z) == 0,
-            self._uncertain_pressure(x, y, beyond=True),
-            self._beside_edge(x, y, points.z),
-        )
-        of_pressure = (1 + 2 * abs(self._fine.friction)) * moved
+        of_pressure = (1 + 2 * abs(self._fine.friction)) * self._uncertain(x, y, points.z)
         change = np.maximum(safety * U, chosen.OF_FIELDS * self.typical)
         return ElementAnswer(value, np.maximum(change, of_pressure) + self._errors[2] + smeared)
 
@@ -137,7 +129,7 @@ class ShapedContact(PressedSolid):
         assert one is not None
         assert extents is not None
         centre = self._fine.pressure.centre * self._units.length
-        peak = max(one.peak_pressure, float(self._uncertain_pressure([centre], 0.0)[0]))
+        peak = max(one.peak_pressure, float(self._uncertain([centre], 0.0)[0]))
         return (one.contact_radius, one.approach, peak, *extents)
 
     def _smeared(self, x: Any, y: Any) -> np.ndarray:
@@ -171,70 +163,19 @@ class ShapedContact(PressedSolid):
     def _pressure(self, points: Any, stated: bool) -> ElementAnswer:
         """Pressure [Pa], uncertain by the changes as far from the edge and, at fixed points, there too."""
         p = self._given(points)
-        if not stated or self.companion is None or self.lower is None:
+        if not stated or self.estimate is None:
             return ElementAnswer(p)
-        U = self._uncertain_pressure(points.x, points.y)
-        here = self._uncertain_by(p, *(self._other(points, one) for one in (self.companion, self.lower)))
-        return ElementAnswer(p, np.maximum(here, U))
+        U = self._uncertain(points.x, points.y)
+        others = (self._other(points, one) for one in (self.estimate.companion, self.estimate.lower))
+        return ElementAnswer(p, np.maximum(uncertain_by(p, *others), U))
 
-    @staticmethod
-    def _uncertain_by(fine: np.ndarray, companion: np.ndarray, lower: np.ndarray) -> np.ndarray:
-        """Uncertainty by the change from the companion and that from a lower degree."""
-        return np.asarray(BY_CONDITIONS * np.abs(fine - companion) + chosen.OF_FIELDS * np.abs(fine - lower))
-
-    def _uncertain_pressure(self, x: Any, y: Any, beyond: bool = False) -> np.ndarray:
-        """Uncertainty of the pressure [Pa] at points as far from the edge as x, y.
-
-        Outside 0, or ``beyond`` what it is as far inside, and no less than farther inside: a pressure that is
-        wrong there moves the stress, that of the edge too.
-        """
-        w, tau = self._fine.pressure.polar(*(np.asarray(v) / self._units.length for v in (x, y)))
-        inside = w < (2 if beyond else 1)
-        share = np.where(inside, 1 - np.abs(1 - w), 0.0)
-        return np.where(inside, self._changes[int(beyond)](np.stack([share, tau], axis=-1)), 0.0)
-
-    @cached_property
-    def _changes(self) -> tuple[RegularGridInterpolator, RegularGridInterpolator]:
-        """Largest change [Pa] near w, tau by the companion and by lower degrees; the largest from w = 0 to w.
-
-        All at the same w, the share of the way to the own edge. A change at one point may be small by chance:
-        within one wave of the polynomial around the contact, and next to w, the largest counts; nearer to the
-        edge than its last wave, where no condition holds the pressure, the largest around the contact.
-        """
-        assert self.companion is not None
-        assert self.lower is not None
-        pressures = self._fine.pressure, self.companion, self.lower
-        w, turn = 1 - np.geomspace(1, 1e-4, 60), np.linspace(0, np.pi, 97)
-        change = self._uncertain_by(*(one(*one.points(w[:, None], turn)) for one in pressures))
-        wave = 2 * round(turn.size / self._fine.pressure.degree) + 1
-        largest = maximum_filter(change, (5, wave), mode=("nearest", "mirror")) * self._units.pressure
-        last = w > 1 - self._last_wave
-        largest[last] = largest[last].max(axis=1, keepdims=True)
-        here, inwards = (
-            RegularGridInterpolator((np.append(w, 1.0), turn), np.vstack([one, one[-1:]]))
-            for one in (largest, np.maximum.accumulate(largest))
-        )
-        return here, inwards
-
-    @property
-    def _last_wave(self) -> float:
-        """Width 1 - w of the last wave of the pressure's polynomials before the edge, T_(D/2)(2 w^2 - 1)."""
-        return float(1 - np.cos(np.pi / self._fine.pressure.degree))
-
-    def _beside_edge(self, x: Any, y: Any, z: Any) -> np.ndarray:
-        """Stress [Pa] at a depth by an uncertain pressure on the last wave, which has no resultant.
-
-        So of two line loads p d at a distance d: 2 p (d/rho)^2/pi, by K. L. Johnson, Contact Mechanics,
-        equation 2.15; rho from the edge, along the surface towards the centre.
-        """
-        x, y, z = np.broadcast_arrays(*(np.asarray(v, dtype=float) / self._units.length for v in (x, y, z)))
-        w, tau = self._fine.pressure.polar(x, y)
-        centre = self._fine.pressure.centre
-        to_edge = np.hypot(np.abs(x) - centre, y) / np.maximum(w, 1e-9)
-        rho = np.hypot((1 - w) * to_edge, z)
-        p = self._changes[1](np.stack([np.ones(w.shape), tau], axis=-1))
-        share = 2 / np.pi * (self._last_wave * to_edge / np.maximum(rho, 1e-9)) ** 2
-        return np.asarray(p * np.where(z > 0, np.minimum(share, 1), 0.0))
+    def _uncertain(self, x: Any, y: Any, z: Any = None) -> np.ndarray:
+        """Uncertainty of the pressure [Pa], or of the stress at z by it."""
+        assert self.estimate is not None
+        x, y = (np.asarray(v) / self._units.length for v in (x, y))
+        if z is None:
+            return self.estimate.of_pressure(x, y) * self._units.pressure
+        return self.estimate.of_stress(x, y, np.asarray(z) / self._units.length) * self._units.pressure
 
     def _other(self, points: Any, pressure: StarPressure) -> np.ndarray:
         """Another pressure [Pa] at the points that are compared."""
@@ -376,10 +317,10 @@ def solve_shape(
     sliding = (friction, -friction)
     fine = [_fields(found, k, sliding[k], surface) for k in range(len(layers))]
     coarse: list[OffAxisFields | None] = [None] * len(layers)
-    uncertainty, extents, other = None, None, None
+    uncertainty, extents, estimate = None, None, None
     if estimate_uncertainty:
         companion, fewer = both.companion, lower.companion
-        other = companion.pressure
+        estimate = StarEstimate(found.pressure, companion.pressure, lower.found.pressure)
         coarse = [_fields(fewer, k, sliding[k], r * surface) for k in range(len(layers))]
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
         # in a change of the area parts of the edge may make up for each other
@@ -425,8 +366,7 @@ def solve_shape(
                 uncertainty=uncertainty,
                 extent_uncertainty=None if extents is None else (float(extents[0]), float(extents[1])),
                 height=shape.height,
-                companion=other,
-                lower=lower.found.pressure,
+                estimate=estimate,
                 typical=_typical(PressedSolid(*pair, unit)) if estimate_uncertainty else 0.0,
                 opposite=sides[0] if sides else None,
             )
