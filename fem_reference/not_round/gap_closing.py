@@ -198,14 +198,14 @@ class OnTwoMeshes:
 
 
 def as_rich_as_helps(
-    of_degree: Callable[[int], OnTwoMeshes], least: int, most: int
+    poorest: OnTwoMeshes, of_degree: Callable[[int], OnTwoMeshes], most: int
 ) -> tuple[OnTwoMeshes, OnTwoMeshes]:
     """The contact by that degree of the pressure whose edge is least uncertain, and by the next lower one.
 
     What elements miss at the edge cannot be closed, and a pressure of too many terms follows it: degrees from
-    ``least`` to ``most`` are tried until ``WORSE`` in turn are worse than the best.
+    that of the ``poorest`` to ``most`` are tried until ``WORSE`` in turn are worse than the best.
     """
-    tried = [of_degree(least - 2), of_degree(least)]
+    tried = [of_degree(poorest.found.pressure.degree - 2), poorest]
     best, uncertain = 1, tried[1].uncertain(tried[0])
     while tried[-1].found.pressure.degree + 2 <= most and len(tried) - 1 - best < chosen.WORSE:
         tried.append(of_degree(tried[-1].found.pressure.degree + 2))

@@ -1,8 +1,8 @@
 """Contact of an indenter that is no sphere, by the compliance of finite elements.
 
 Contour and pressure are found from Hertz's ellipse of the bare bodies on (``gap_closing``): on a rough mesh,
-which tells how far the contact reaches, on the mesh, and on a coarser companion with a pressure of lower
-degree.
+which tells how far the contact reaches, then on the mesh and on a coarser companion, by pressures of several
+degrees.
 """
 
 import time
@@ -118,7 +118,9 @@ class ShapedContact(PressedSolid):
         distance = np.hypot(x, y) / (chosen.AXIS_SAFETY[1] * self._units.length)
         safety = chosen.OF_FIELDS * (1 + (chosen.AXIS_SAFETY[0] - 1) * np.maximum(1 - distance, 0))
         # beside an edge the stress along the surface is that of plane strain, -p inside and 2 f p outside
-        of_pressure = (1 + 2 * abs(self._fine.friction)) * self._uncertain(x, y, points.z)
+        assert self.estimate is not None
+        by_pressure = self.estimate.of_stress(*self._scaled(x, y, points.z)) * self._units.pressure
+        of_pressure = (1 + 2 * abs(self._fine.friction)) * by_pressure
         change = np.maximum(safety * U, chosen.OF_FIELDS * self.typical)
         return ElementAnswer(value, np.maximum(change, of_pressure) + self._errors[2] + smeared)
 
@@ -128,8 +130,9 @@ class ShapedContact(PressedSolid):
         one, extents = self.uncertainty, self.extent_uncertainty
         assert one is not None
         assert extents is not None
-        centre = self._fine.pressure.centre * self._units.length
-        peak = max(one.peak_pressure, float(self._uncertain([centre], 0.0)[0]))
+        assert self.estimate is not None
+        there = self.estimate.of_pressure(np.array([self._fine.pressure.centre]), np.zeros(1))
+        peak = max(one.peak_pressure, float(there[0]) * self._units.pressure)
         return (one.contact_radius, one.approach, peak, *extents)
 
     def _smeared(self, x: Any, y: Any) -> np.ndarray:
@@ -165,21 +168,16 @@ class ShapedContact(PressedSolid):
         p = self._given(points)
         if not stated or self.estimate is None:
             return ElementAnswer(p)
-        U = self._uncertain(points.x, points.y)
+        U = self.estimate.of_pressure(*self._scaled(points.x, points.y)) * self._units.pressure
         others = (self._other(points, one) for one in (self.estimate.companion, self.estimate.lower))
         return ElementAnswer(p, np.maximum(uncertain_by(p, *others), U))
 
-    def _uncertain(self, x: Any, y: Any, z: Any = None) -> np.ndarray:
-        """Uncertainty of the pressure [Pa], or of the stress at z by it."""
-        assert self.estimate is not None
-        x, y = (np.asarray(v) / self._units.length for v in (x, y))
-        if z is None:
-            return self.estimate.of_pressure(x, y) * self._units.pressure
-        return self.estimate.of_stress(x, y, np.asarray(z) / self._units.length) * self._units.pressure
+    def _scaled(self, *coordinates: Any) -> tuple[np.ndarray, ...]:
+        return tuple(np.asarray(one) / self._units.length for one in coordinates)
 
     def _other(self, points: Any, pressure: StarPressure) -> np.ndarray:
         """Another pressure [Pa] at the points that are compared."""
-        x, y = (v / self._units.length for v in self._matching(points, pressure))
+        x, y = self._scaled(*self._matching(points, pressure))
         return np.asarray(pressure(x, y) * self._units.pressure)
 
     def _matching(self, points: Any, other: StarPressure) -> tuple[Any, Any]:
@@ -305,12 +303,16 @@ def solve_shape(
     coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
     first_found = on_mesh(reach, grid, begin.of_degree(least))
     first_found.check(shape.scaled(reach), indenter[0])
-    meshes = (first_found, grid), (on_mesh(reach, coarser, first_found.pressure.scaled(1 / reach)), coarser)
+    companion_first = on_mesh(reach, coarser, first_found.pressure.scaled(1 / reach))
+    poorest = OnTwoMeshes(first_found, companion_first)
 
     def of_degree(degree: int) -> OnTwoMeshes:
-        return OnTwoMeshes(*(one.of_degree(degree, *arguments(reach, mesh)) for one, mesh in meshes))
+        return OnTwoMeshes(
+            poorest.found.of_degree(degree, *arguments(reach, grid)),
+            poorest.companion.of_degree(degree, *arguments(reach, coarser)),
+        )
 
-    both, lower = as_rich_as_helps(of_degree, least, most)
+    both, lower = as_rich_as_helps(poorest, of_degree, most)
     found = both.found
     found.check(shape.scaled(reach), indenter[0])
     numbers, residual = _numbers(found), found.residual(shape.scaled(reach))
@@ -338,7 +340,8 @@ def solve_shape(
         total = np.sqrt(sum(part**2 for _, part in parts)) * units
         uncertainty = ElementUncertainty(float(total[0]), float(total[1]), float(total[2]), budget)
         # no extent is better known than the contact radius: the edge may be at rest at its ends by chance
-        extents = np.maximum(total[3:], total[0] / numbers[0] * numbers[3:])
+        ends = np.maximum(total[3:], total[0] / numbers[0] * numbers[3:])
+        extents = float(ends[0]), float(ends[1])
     d = fine[0].discretisation
     nodes = np.linspace(0, 2.6 * found.pressure.extents[0], 160)
     sides: list[ShapedContact] = []
@@ -364,7 +367,7 @@ def solve_shape(
                     seconds=time.perf_counter() - began,
                 ),
                 uncertainty=uncertainty,
-                extent_uncertainty=None if extents is None else (float(extents[0]), float(extents[1])),
+                extent_uncertainty=extents,
                 height=shape.height,
                 estimate=estimate,
                 typical=_typical(PressedSolid(*pair, unit)) if estimate_uncertainty else 0.0,
