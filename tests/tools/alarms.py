@@ -81,7 +81,7 @@ def alarms(
         count: Number of problems.
         seed: Seed of the random numbers.
         films: A film of h/a_h from 0.001 to 0.02, alone or below one up to 0.2; E1/E2 from 0.1 to 10.
-        ellipses: Ellipses 1.5 to 4 : 1 on a coating of E1/E2 from 0.25 to 4; inconclusive ones near the edge.
+        ellipses: Ellipses 1.5 to 4 : 1 on a coating of E1/E2 from 0.25 to 4, half with an elastic body.
         output: Directory of the report, of the results, of the case files.
         record: Store the record as RECORDS/alarms.json, for the credibility page of every report.
         time_limit: Seconds one problem may take before it is stopped and counted as alarms.

@@ -29,6 +29,7 @@ from verification.cases.drawn_ranges import (
 ELONGATION = (1.5, 4.0)  # about the ratio of the axes; that of the radii to the power 1.5
 CLOSE_RATIO = (0.25, 4.0)  # E1/E2
 OF_SHORT_AXIS = (0.1, 2.0)  # h over the short half-axis
+ELLIPSE_POISSON = (0.1, 0.45)
 SLIDING = (0.0, 0.1, 0.3, 0.5)
 LARGE_RADIUS, LOAD, STEEL = 20e-3, 20.0, 210e9  # m, N, Pa
 ELASTIC = 0.5  # share of the problems with an elastic ball, of no coating to three
@@ -101,11 +102,14 @@ def draw(seed: int, number: int, films: bool = False) -> Draw:
 
 
 def draw_ellipse(seed: int, number: int) -> Draw:
-    """Ellipsoid ``number`` of the sequence ``seed`` on one coating; x is its long or its short axis."""
+    """Ellipsoid ``number`` of the sequence ``seed`` on one coating; x is its long or its short axis.
+
+    The ellipsoid is rigid or, in half of the problems, elastic, bare or with one coating of its own.
+    """
     random = np.random.default_rng([seed, number])
     elongation = random.uniform(*ELONGATION)
     ratio, h = (float(np.exp(random.uniform(*np.log(bounds)))) for bounds in (CLOSE_RATIO, OF_SHORT_AXIS))
-    nu, nu_below = random.uniform(0.1, 0.45, 2)
+    nu, nu_below = random.uniform(*ELLIPSE_POISSON, 2)
     friction = float(random.choice(SLIDING))
     radii = [_rounded(LARGE_RADIUS / elongation**1.5), LARGE_RADIUS]
     if random.uniform() < 0.5:
@@ -117,9 +121,22 @@ def draw_ellipse(seed: int, number: int) -> Draw:
         f"friction = {friction!r}",
         f"substrate = {{ E = {STEEL!r}, nu = {_rounded(nu_below)!r} }}",
     ]
+    if random.uniform() < ELASTIC:
+        (E_body, nu_body, _), own = (_close_layer(random, elongation) for _ in range(2))
+        coated = random.uniform() < 0.5
+        layer = "{{ E = {!r}, nu = {!r}, thickness_over_a_h = {!r} }}".format(*own) if coated else ""
+        given.append(f"ball = {{ E = {E_body!r}, nu = {nu_body!r}, coatings = [{layer}] }}")
+        title += f", elastic body, coatings on it: {int(coated)}"
     coating = _rounded(ratio * STEEL), _rounded(nu), _rounded(h / elongation**0.5)
     text = _text(f"{title}, f = {friction:.3g}", given, [coating])
     return Draw(f"ellipse_{seed}_{number:03d}", title, text)
+
+
+def _close_layer(random: np.random.Generator, elongation: float) -> tuple[float, float, float]:
+    """E [Pa], nu, h / a_h of a layer as under an ellipse."""
+    ratio, h = (float(np.exp(random.uniform(*np.log(bounds)))) for bounds in (CLOSE_RATIO, OF_SHORT_AXIS))
+    nu = float(random.uniform(*ELLIPSE_POISSON))
+    return _rounded(ratio * STEEL), _rounded(nu), _rounded(h / elongation**0.5)
 
 
 def _text(title: str, given: list[str], coatings: Iterable[tuple[float, float, float]]) -> str:

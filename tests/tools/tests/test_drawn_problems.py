@@ -46,6 +46,9 @@ def test_ellipses_are_drawn_either_way_on_one_coating_and_compared_by_two_method
         < 8.1
     )
     assert {claim.between for case in cases for claim in case.claims} == {("semianalytic", "fem_reference")}
+    elastic = [one.ball for one in problems if one.ball is not None]
+    assert 35 < len(elastic) < 65
+    assert {len(coatings) for _, _, coatings in elastic} == {0, 1}
 
 
 @pytest.mark.slow
