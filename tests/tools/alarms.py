@@ -39,7 +39,16 @@ from verification.commands.common.terminal import (
     with_exit_code,
 )
 from verification.commands.common.terminal_bar import require_gmsh
-from verification.evidence.alarm_record import DECADES, Alarm, AlarmRecord, Ratios, write_record
+from verification.evidence.alarm_record import (
+    DECADES,
+    KINDS,
+    Alarm,
+    AlarmRecord,
+    Campaign,
+    Ratios,
+    read_record,
+    write_record,
+)
 from verification.evidence.judged_source import source_hash
 from verification.judging.verdict import Outcome
 from verification.regression.junit_xml import junit_xml
@@ -83,17 +92,18 @@ def alarms(
         films: A film of h/a_h from 0.001 to 0.02, alone or below one up to 0.2; E1/E2 from 0.1 to 10.
         ellipses: Ellipses 1.5 to 4 : 1 on a coating of E1/E2 from 0.25 to 4, half with an elastic body.
         output: Directory of the report, of the results, of the case files.
-        record: Store the record as RECORDS/alarms.json, for the credibility page of every report.
+        record: Add kind and seed to RECORDS/alarms.json, for the credibility page of every report; what was
+            measured on other code is dropped from it.
         time_limit: Seconds one problem may take before it is stopped and counted as alarms.
     """
     jobs = worker_count(jobs, time_limit=time_limit)
     if count < 1 or seed < 0:
         raise CommandError(f"--count = {count}, --seed = {seed}; only the seed may be zero, none negative")
-    kind = "--films" if films else "--ellipses" if ellipses else ""
     if films and ellipses:
         raise CommandError("--films with --ellipses; the problems are of one kind, leave one out")
-    if record and kind:
-        raise CommandError(f"--record with {kind}; the record is that of all random problems, leave one out")
+    option, kind = (
+        ("--films", KINDS[1]) if films else ("--ellipses", KINDS[2]) if ellipses else ("", KINDS[0])
+    )
     if record:
         require_checkout(records, "--records")
     require_gmsh()
@@ -110,11 +120,12 @@ def alarms(
         tasks = [case_task(case, output) for case in cases if case.name not in kept]
         solved = {r.name: r for r in solve(tasks, jobs, time_limit, quiet or as_json, executor=executor)}
         results = [kept.get(case.name) or solved[case.name] for case in cases]
-        of = f"--count {count} --seed {seed} {kind}".rstrip()
+        of = f"--count {count} --seed {seed} {option}".rstrip()
         info = run_info(f"tests/tools alarms {of}", started, jobs, scheduler)
         page = write_report(ReportMaterial(results, info), output, junit_xml(results, info))
-        found = counted(results, seed, info)
-        stored = write_record(records, found) if record else None
+        found = counted(results, kind, seed, info)
+        known = read_record(records) if record else None
+        stored = write_record(records, with_campaign(known, found)) if record else None
     if as_json:
         print_json(plain(asdict(found)))
     elif not quiet:
@@ -128,7 +139,7 @@ def _case(drawn: Draw, output: Path) -> Case:
     return parse_case(drawn.text.encode(), path)
 
 
-def _print(found: AlarmRecord, page: Path, stored: Path | None) -> None:
+def _print(found: Campaign, page: Path, stored: Path | None) -> None:
     if found.alarms:
         table = named_table("problem", "quantity", "line", "between", "verdict")
         for alarm in found.alarms[:MOST_SHOWN]:
@@ -138,14 +149,15 @@ def _print(found: AlarmRecord, page: Path, stored: Path | None) -> None:
         if (more := len(found.alarms) - MOST_SHOWN) > 0:
             print_out(f"... with {more} more in the report")
     print_out(
-        f"{found.tally} of {found.problems} clean problems, seed {found.seed}; "
-        f"{found.agreeing} problems agree throughout",
+        f"{len(found.false_alarms)} false alarms, {len(found.inconclusive)} inconclusive verdicts (U above its "
+        f"cap) in {found.comparisons} comparisons and {found.invariants} invariants of {found.problems} "
+        f"clean problems, seed {found.seed}; {found.agreeing} problems agree throughout",
         escape(f"{found.seconds:.0f} s; report: {page}"),
         *([escape(f"recorded: {stored}")] if stored is not None else []),
     )
 
 
-def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRecord:
+def counted(results: Sequence[CaseResult], kind: str, seed: int, info: RunInfo) -> Campaign:
     """The alarms in ``results``; a case without any comparison is one."""
     verdicts = [(r, claim, verdict) for r in results for claim, verdict in r.verdicts]
     invariants = [(r, invariant) for r in results for invariant in r.invariants]
@@ -155,14 +167,16 @@ def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRec
         *((r, (i.name, "", (i.source,), i.outcome, i.message)) for r, i in invariants),
         *((r, nothing) for r in results if not r.verdicts),
     ]
-    alarms = [Alarm(r.name, r.title, *row, r.text) for r, row in found if row[3] is not Outcome.AGREES]
-    return AlarmRecord(
+    alarms = [Alarm(r.name, r.title, *row) for r, row in found if row[3] is not Outcome.AGREES]
+    return Campaign(
+        kind,
         seed,
         len(results),
         sum(result.outcome is Outcome.AGREES for result in results),
         len(verdicts),
         len(invariants),
         tuple(alarms),
+        max((_largest(result) for result in results), default=0.0),
         info.started,
         info.seconds,
         info.commit,
@@ -171,6 +185,36 @@ def counted(results: Sequence[CaseResult], seed: int, info: RunInfo) -> AlarmRec
         tuple(_ratios(results, source) for source in METHODS),
         source_hash("alarms"),
     )
+
+
+def with_campaign(record: AlarmRecord | None, new: Campaign) -> AlarmRecord:
+    """``record`` with ``new`` in place of one of its kind and seed; those on other code are left out."""
+    kept = [one for one in record.campaigns if one.source == new.source] if record else []
+    kept = [one for one in kept if (one.kind, one.seed) != (new.kind, new.seed)]
+    return AlarmRecord(tuple(sorted((*kept, new), key=lambda one: (KINDS.index(one.kind), one.seed))))
+
+
+def _largest(result: CaseResult) -> float:
+    """Largest difference over the sum of both uncertainties in the comparisons of ``result``."""
+    profiles, largest = {(p.quantity, p.line, p.source): p for p in result.profiles}, 0.0
+    for claim, verdict in result.verdicts:
+        a, b, size = (
+            profiles.get((name, line, source))
+            for name, line, source in (
+                *((claim.quantity, claim.line, source) for source in claim.between),
+                ("contact_radius", "contact", claim.between[1]),
+            )
+        )
+        if a is None or b is None or a.uncertainty is None or b.uncertainty is None or verdict.judged is None:
+            continue
+        difference, edge = np.abs(a.value - b.value), 0.0 if size is None else float(size.value[0])
+        counted = difference > LEAST * verdict.judged.scale
+        counted &= np.abs(np.abs(a.position) - edge) >= claim.edge * edge
+        U = (a.uncertainty + b.uncertainty)[counted]
+        largest = max(
+            largest, float((difference[counted] / np.maximum(U, np.finfo(float).tiny)).max(initial=0))
+        )
+    return largest
 
 
 def _ratios(results: Sequence[CaseResult], source: str) -> Ratios:

@@ -89,7 +89,11 @@ def first_page(data):
     new = group(every, repeated)
     counted = [one for key, of in new.items() for one in (of if key is None else of[:1])]
     yield "first", [FIXED, len(every), len(cases), len(every) - len(counted)]
-    yield "first", [data.run, dated(e.alarms), dated(e.faults), [case.of("title", "name") for case in cases]]
+    drawn = e.alarms.campaigns
+    yield (
+        "first",
+        [data.run, *map(dated, drawn), dated(e.faults), [case.of("title", "name") for case in cases]],
+    )
     kinds = group(counted, lambda one: (bool(CLOSED & {*one.between}), {*one.between} == TWICE))
     at_edge = group(every, lambda one: one.line == "surface near the edge")
     yield "first", [[agree(of), largest(of, "difference")] for of in (*kinds.values(), *at_edge.values())]
@@ -99,8 +103,7 @@ def first_page(data):
     yield "first", [[one.cap for one in at_edge.get(True, [])], len(zones) + len(shaped)]
     ratios = [one.ratio for case in cases for one in accuracies(case)]
     yield "first", [sum(ratio >= 1 for ratio in ratios), median(ratio for ratio in ratios if ratio < inf)]
-    wrong = {one.case for one in e.alarms.alarms if one.outcome != "INCONCLUSIVE"}
-    yield "first", [len(wrong), e.alarms.problems, e.alarms.seed, 1 - 0.05 ** (1 / e.alarms.problems)]
+    yield "first", [alarms_of(of) for of in group(drawn, lambda one: one.kind).values()]
     yield "first", [scores(e.faults.rows), measured(data, e.validation.sets[0]).summary, len(e.self_tests)]
     yield "first", [agree([law for case in cases for law in case.invariants]), agree(data.shown.studies)]
     yield "first", [sum(one.same for one in data.baseline.cases), sum(one.statements for one in e.code.parts)]
@@ -112,6 +115,17 @@ def first_page(data):
     strips = sorted(map(compared, cases), key=lambda of: -largest(of, "difference"))
     yield "first", [[len(of), largest(of, "difference")] for of in strips[:7]]
     yield "first", [len(cases) - 6, sum(map(len, strips[6:]))]
+
+
+def alarms_of(campaigns):
+    """Random problems of one kind: seeds, problems, those with a wrong and with a vague verdict, bound."""
+    every, total = (
+        [alarm for one in campaigns for alarm in one.alarms],
+        sum(one.problems for one in campaigns),
+    )
+    wrong = {one.case for one in every if one.outcome != "INCONCLUSIVE"}
+    vague = {one.case for one in every if one.outcome == "INCONCLUSIVE"}
+    return [[one.seed for one in campaigns], len(wrong), len(vague), total, 1 - 0.05 ** (1 / total)]
 
 
 def repeated(one):
@@ -132,7 +146,7 @@ def run_pages(data):
     """Tables and texts of the pages about the whole run."""
     e, cases, shown, drifts = data.evidence, data.cases, data.shown, data.baseline.cases
     maps, parts = e.maps.maps, shown.measurements.of("set", "excluded", "seen")
-    dates = [FIXED, *map(dated, (e.code, e.faults, e.alarms, e.enclosures, data.run, *maps))]
+    dates = [FIXED, *map(dated, (e.code, e.faults, *e.alarms.campaigns, e.enclosures, data.run, *maps))]
     yield "reading", [*dates, data.run, len(cases)]
     yield "case|verdict", [overview(case) for case in cases]
     yield from credibility(data, dates)
@@ -187,7 +201,12 @@ def errors(case, method):
 
 def credibility(data, dates):
     """Tables and text of the page on what an agreement is worth."""
-    e, cases, rows, alarms = data.evidence, data.cases, data.evidence.faults.rows, data.evidence.alarms
+    e, cases, rows, drawn = (
+        data.evidence,
+        data.cases,
+        data.evidence.faults.rows,
+        data.evidence.alarms.campaigns,
+    )
     problems = [case.problem for case in cases]
     layers = [(E / one.substrate[0], h / one.a_h, nu) for one in problems for E, nu, h in one.coatings]
     ratios, depths, nus = zip(*layers, strict=True)
@@ -202,7 +221,8 @@ def credibility(data, dates):
     ends = ("difference", "uncertainty")
     yield "between|agree", [[agree(of), *(largest(of, end) for end in ends)] for of in pairs]
     yield "part|files", [one.of("files", "statements") for one in e.code.parts]
-    yield "problem|verdict", alarms.alarms
+    yield "problem|verdict", [one.alarms for one in drawn]
+    yield "random|seed", [[one, alarms_of([one]), len(one.alarms), one.ratios] for one in drawn]
     every = [law for case in cases for law in case.invariants]
     laws = group(every, lambda law: re.sub(", (coating|interface|layer) [0-9]+$|, substrate$", "", law.name))
     sources = {name: group(of, lambda law: law.source).values() for name, of in laws.items()}
@@ -221,10 +241,9 @@ def credibility(data, dates):
     bounds = [bound for one in e.enclosures.enclosures for bound in one.bounds]
     yield "credibility", [len(bounds), len(e.enclosures.enclosures), max(map(width, bounds))]
     yield "credibility", [e.enclosures.versions, e.self_tests]
-    vague = [one for one in alarms.alarms if one.outcome == "INCONCLUSIVE"]
-    yield "credibility", [len(vague), len(alarms.alarms) - len(vague), len({one.case for one in vague})]
-    yield "credibility", alarms.of("comparisons", "invariants", "problems", "agreeing", "seed")
-    yield "credibility", [one.of("values", "within", "median", "largest") for one in alarms.ratios]
+    yield "credibility", [alarms_of(of) for of in group(drawn, lambda one: one.kind).values()]
+    methods = group([one for of in drawn for one in of.ratios], lambda one: one.source).values()
+    yield "credibility", [sum(one["values"] for one in of) for of in methods]
     yield "credibility", [agree(every), len(cases), max(shares(every))]
     yield "credibility", [e.faults.core_seconds, len(e.faults.controls), tally(rows), scores(rows)]
     yield "credibility", [len(of) for of in group(rows, lambda row: row.group).values()]

@@ -7,19 +7,21 @@ solve each problem.
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import betaincinv
 
 from verification.judging.verdict import Outcome
 from verification.running.json_records import RecordFile
 
-SCHEMA = "coatcheck-alarms/3"
-READABLE = (SCHEMA, "coatcheck-alarms/2")  # the second without ratios
+SCHEMA = "coatcheck-alarms/4"
+READABLE = (SCHEMA,)
+KINDS = ("round contacts", "thin films", "ellipses")
 # Of log10 error/U: the ends of the bins; below the first and above the last all is counted in the outermost.
 DECADES = tuple(float(x) for x in np.arange(-5, 1.01, 0.25))
 
 
 @dataclass(frozen=True)
 class Alarm:
-    """One comparison that does not agree, or invariant that does not hold, with its case file."""
+    """One comparison that does not agree, or invariant that does not hold."""
 
     case: str
     title: str
@@ -28,7 +30,6 @@ class Alarm:
     between: tuple[str, ...]
     outcome: Outcome
     reason: str
-    toml: str
 
 
 @dataclass(frozen=True)
@@ -48,18 +49,21 @@ class Ratios:
 
 
 @dataclass(frozen=True)
-class AlarmRecord:
-    """The alarms of ``problems`` random problems of ``seed``, with provenance and seconds in total.
+class Campaign:
+    """``problems`` random problems of one ``kind`` and ``seed``, with provenance and seconds in total.
 
     agreeing : problems in which all comparisons agree and all invariants hold.   source : hash of the code.
+    largest : of the difference over U in all comparisons.
     """
 
+    kind: str
     seed: int
     problems: int
     agreeing: int
     comparisons: int
     invariants: int
     alarms: tuple[Alarm, ...]
+    largest: float
     started: str
     seconds: float
     commit: str | None
@@ -78,14 +82,48 @@ class AlarmRecord:
         """The verdicts that find U above its cap."""
         return tuple(one for one in self.alarms if one.outcome is Outcome.INCONCLUSIVE)
 
+
+@dataclass(frozen=True)
+class AlarmRecord:
+    """The campaigns on one code, each of a kind and a seed, and what they sum up to."""
+
+    campaigns: tuple[Campaign, ...]
+
     @property
-    def tally(self) -> str:
-        """Both numbers in words."""
-        text = f"{len(self.false_alarms)} false alarms"
-        if vague := self.inconclusive:
-            problems = len({one.case for one in vague})
-            text += f" and {len(vague)} inconclusive verdicts (U above its cap, in {problems} problems)"
-        return f"{text} in {self.comparisons} comparisons and {self.invariants} invariants"
+    def kinds(self) -> dict[str, "AlarmRecord"]:
+        """The campaigns of each kind that was drawn."""
+        of = {kind: tuple(one for one in self.campaigns if one.kind == kind) for kind in KINDS}
+        return {kind: AlarmRecord(drawn) for kind, drawn in of.items() if drawn}
+
+    @property
+    def problems(self) -> int:
+        """Number of problems."""
+        return sum(one.problems for one in self.campaigns)
+
+    @property
+    def wrong(self) -> int:
+        """Number of problems with a false alarm."""
+        return len({alarm.case for one in self.campaigns for alarm in one.false_alarms})
+
+    @property
+    def vague(self) -> int:
+        """Number of problems with an inconclusive verdict."""
+        return len({alarm.case for one in self.campaigns for alarm in one.inconclusive})
+
+    @property
+    def rate(self) -> float:
+        """Upper bound at 95 % of the share of problems with a false alarm.
+
+        The p at which so few have a probability of 5 % (Clopper and Pearson, Biometrika 26, 1934, 404-413).
+        """
+        return float(betaincinv(self.wrong + 1, self.problems - self.wrong, 0.95))
+
+    @property
+    def counts(self) -> dict[str, tuple[int, ...]]:
+        """Values of each method in the bins of ``DECADES``."""
+        every = [r for one in self.campaigns for r in one.ratios if r.values]
+        of = {source: [r.counts for r in every if r.source == source] for source in (r.source for r in every)}
+        return {source: tuple(map(sum, zip(*found, strict=True))) for source, found in of.items()}
 
 
 _FILE = RecordFile(AlarmRecord, "alarms.json", READABLE, "false alarms", "measure it again")

@@ -14,6 +14,7 @@ JUDGED = {
     "maps": ("verification.sources.assumptions",),
     "validation": (*_METHODS, *(f"verification.validation.{name}" for name in _COMPARING)),
 }
+_PARTS = {"maps": "maps", "alarms": "campaigns"}  # of records that are made a part at a time
 
 
 def source_hash(record: str) -> str:
@@ -23,5 +24,5 @@ def source_hash(record: str) -> str:
 
 def is_older(name: str, record: Any) -> bool:
     """Whether the source that a record, or any part of it, judges is not the present one."""
-    parts = getattr(record, "maps", (record,))
+    parts = getattr(record, _PARTS[name]) if name in _PARTS else (record,)
     return name in JUDGED and any(one.source != source_hash(name) for one in parts)

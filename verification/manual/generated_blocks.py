@@ -151,15 +151,32 @@ def false_alarms() -> str:
     """Verdicts other than AGREES on random problems without an error."""
     record = alarm_record.read_record(RECORDS)
     assert record is not None
-    text = (
-        f"{_day(record.started)}: {record.tally} of {record.problems} random problems (seed "
-        f"{record.seed}), of which {record.agreeing} agree throughout."
+    drawn, of_values = [], []
+    for one in record.campaigns:
+        vague = len({alarm.case for alarm in one.inconclusive})
+        counts = one.problems, one.agreeing, vague, one.comparisons, len(one.false_alarms)
+        drawn.append([one.kind, str(one.seed), *map(str, counts), f"{one.largest:.2f}"])
+        for r in one.ratios:
+            if r.values:
+                figures = str(r.values), f"{r.within:.4%}", f"{r.largest:.2f}", f"{r.median:.3g}"
+                of_values.append([f"{one.kind}, {one.seed}", SOURCES[r.source].label, *figures])
+    bounds = "; ".join(
+        f"{of.wrong} of {of.problems} {kind} raised a false alarm (at 95 %: at most {100 * of.rate:.2g} %)"
+        for kind, of in record.kinds.items()
     )
-    rows = [
-        [SOURCES[r.source].label, str(r.values), f"{r.within:.1%}", f"{r.median:.3g}"] for r in record.ratios
+    head = [
+        "random",
+        "seed",
+        "problems",
+        "agree",
+        "inconclusive",
+        "comparisons",
+        "false alarms",
+        "difference/$U$",
     ]
-    head = ["method", "values", "error within $U$", "median of $U$ over error"]
-    return f"{text}\n\n{table(head, rows, 1)}"
+    of_value = ["random", "method", "values", "error within $U$", "largest error/$U$", "median of $U$/error"]
+    tables = table(head, drawn, 2), table(of_value, of_values, 2)
+    return "\n\n".join((f"Drawn last on {_day(record.campaigns[-1].started)}: {bounds}.", *tables))
 
 
 def citation() -> str:

@@ -9,6 +9,7 @@ from synthetic_study import study
 
 from verification.credibility.model_error import Cost, ModelError
 from verification.evidence import alarm_record, code_record, judged_source
+from verification.evidence.alarm_record import AlarmRecord
 from verification.evidence.enclosure_record import SHIPPED
 from verification.evidence.fault_record import Catch, FaultRow, Record, write_record
 from verification.evidence.judged_source import is_older, source_hash
@@ -70,16 +71,18 @@ def test_what_was_never_measured_is_said(evidence):
 def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
     vague = result_of(contact((E / 2, NU, 1.0)), name="vague", points=33, errors={"semianalytic": 4e-3})
     info = replace(INFO, started="2026-10-09T08:00:00+00:00", commit="c0ffee123456")
-    record = counted([RESULTS[0], vague], 1, info)
+    made = counted([RESULTS[0], vague], "round contacts", 1, info)
+    record = AlarmRecord((made,))
     alarm_record.write_record(tmp_path, record)
     known = gather(tmp_path)
     assert known.alarms == record
     found = section(known)
-    assert len(record.alarms) == len(record.false_alarms) + len(record.inconclusive) > 0
+    assert len(made.alarms) == len(made.false_alarms) + len(made.inconclusive) > 0
     text = said(part(found, "False"))
-    assert f"{len(record.false_alarms)} false alarms and {len(record.inconclusive)} inconclusive" in text
-    assert f"in {record.comparisons} comparisons" in text
-    assert record.alarms[0].reason in said(found.parts[-2])
+    assert f"{record.wrong} of 2 round contacts raised a false alarm" in text
+    assert f"at most {100 * record.rate:.2g} %" in text
+    assert all(word in text for word in ("2026-10-09", "c0ffee12", str(made.comparisons)))
+    assert made.alarms[0].reason in said(found.parts[-2])
 
 
 def test_the_fault_score_and_its_survivors_come_from_the_record(tmp_path):

@@ -10,7 +10,7 @@ from synthetic_study import study
 
 from verification.commands.report import report
 from verification.credibility.self_tests import SelfTest
-from verification.evidence.alarm_record import write_record
+from verification.evidence.alarm_record import AlarmRecord, write_record
 from verification.regression.baseline_change import regression, updated
 from verification.regression.junit_xml import junit_xml
 from verification.report.report_material import ReportMaterial, gather, stored_material
@@ -36,7 +36,7 @@ def run(tmp_path):
         write_checked(folder / "cases" / f"{result.name}.json", to_json(result))
     plane = sample_plane((), {"fem_reference": Hertz(10e-3, 20.0, *STEEL)})
     write_plane(plane_path(folder, "z_first"), plane, "the case file")
-    write_record(tmp_path / "records", counted(RESULTS, 1, INFO))
+    write_record(tmp_path / "records", AlarmRecord((counted(RESULTS, "round contacts", 1, INFO),)))
     baseline = updated(None, RESULTS[:1], INFO, "first", INFO.started)
     material, _ = stored_material(folder)
     evidence = replace(

@@ -5,10 +5,11 @@ Mechanics, ASME V&V 20-2009 for validation, and NASA-STD-7009B (2024), Standard 
 """
 
 from collections.abc import Sequence
+from functools import partial
 
 from verification.cases.drawn_ranges import FRICTION, MOST_COATINGS, POISSON, RATIO, THICKNESS, THINNEST
 from verification.credibility.self_tests.known_verdicts import TEST
-from verification.evidence.alarm_record import DECADES
+from verification.evidence.alarm_record import DECADES, Campaign
 from verification.evidence.code_record import shared
 from verification.judging.verdict import Outcome
 from verification.page.number_text import plain
@@ -31,6 +32,7 @@ from verification.report.report_material import Evidence, ReportMaterial
 from verification.report.report_words import stated
 from verification.report.tables.case_lookup import layers, scale
 from verification.running.case_result import CaseResult
+from verification.sources.source_registry import METHODS
 
 MOST = 30
 NO_RECORD = "Not measured: there is no record of {}; make one in a checkout with: {} --record"
@@ -213,19 +215,33 @@ def _alarms(evidence: Evidence) -> list[Part]:
         return [Part(text, title="False alarms", anchor="alarms")]
     panels = [
         Panel(
-            source_label(one.source),
-            draw_histogram(DECADES, one.counts, f"Error over uncertainty of {source_label(one.source)}"),
-            f"{one.values} values, {100 * one.within:.4g} % within U, largest error over U "
-            f"{one.largest:.3g}; median of U over the error {one.median:.3g}",
+            source_label(source),
+            draw_histogram(DECADES, counts, f"Error over uncertainty of {source_label(source)}"),
+            f"{sum(counts)} values",
         )
-        for one in record.ratios
-        if one.values
+        for source, counts in record.counts.items()
     ]
     histograms = Gallery((), panels, stated("ratios")) if panels else None
-    count = len(record.alarms)
+    drawn = table_of(
+        "Each kind and seed.",
+        record.campaigns,
+        [
+            ("random", lambda one: Cell(one.kind, css="words")),
+            ("seed", lambda one: str(one.seed)),
+            ("problems", lambda one: one.problems),
+            ("agree throughout", lambda one: one.agreeing),
+            ("inconclusive", lambda one: len({alarm.case for alarm in one.inconclusive})),
+            ("comparisons", lambda one: one.comparisons),
+            ("false alarms", lambda one: len(one.false_alarms)),
+            ("largest difference / U", lambda one: f"{one.largest:.2f}"),
+            *((f"within U, {source_label(name)}", partial(_within, source=name)) for name in METHODS),
+            ("made", lambda one: f"{one.started[:10]}, {(one.commit or 'no commit')[:8]}"),
+        ],
+    )
+    alarms = [alarm for one in record.campaigns for alarm in one.alarms]
     table = table_of(
-        f"The first {MOST} of {count}." if count > MOST else f"All {count}.",
-        record.alarms[:MOST],
+        f"The first {MOST} of {len(alarms)}." if len(alarms) > MOST else f"All {len(alarms)}.",
+        alarms[:MOST],
         [
             ("problem", lambda alarm: Cell(alarm.title, note=alarm.case, css="words")),
             ("verdict", lambda alarm: outcome_cell(alarm.outcome)),
@@ -235,6 +251,12 @@ def _alarms(evidence: Evidence) -> list[Part]:
             ("reason", lambda alarm: words(alarm.reason)),
         ],
     )
-    said = stated("false_alarms", record=record, made=_when(evidence, "alarms"))
+    said = stated("false_alarms", record=record, older="alarms" in evidence.older)
     folded = Part("", [table], folded="Verdicts of clean problems that are not AGREES")
-    return [Part(said, [], histograms, "False alarms", anchor="alarms"), folded]
+    return [Part(said, [drawn], histograms, "False alarms", anchor="alarms"), folded]
+
+
+def _within(one: Campaign, source: str) -> str:
+    """Share of the values of ``source`` whose error is at most U, with the largest error over U."""
+    found = next((r for r in one.ratios if r.source == source and r.values), None)
+    return f"{100 * found.within:.4g} % of {found.values}, at most {found.largest:.2f}" if found else "–"
