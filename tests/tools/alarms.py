@@ -149,9 +149,10 @@ def _print(found: Campaign, page: Path, stored: Path | None) -> None:
         if (more := len(found.alarms) - MOST_SHOWN) > 0:
             print_out(f"... with {more} more in the report")
     print_out(
-        f"{len(found.false_alarms)} false alarms, {len(found.inconclusive)} inconclusive verdicts (U above its "
-        f"cap) in {found.comparisons} comparisons and {found.invariants} invariants of {found.problems} "
-        f"clean problems, seed {found.seed}; {found.agreeing} problems agree throughout",
+        f"{len(found.wrong)} of {found.problems} clean problems of seed {found.seed} raised a false alarm, "
+        f"{len(found.vague)} are inconclusive (U above its cap), {found.agreeing} agree throughout, in "
+        f"{found.comparisons} comparisons and {found.invariants} invariants; largest difference "
+        f"{found.largest:.2f} U",
         escape(f"{found.seconds:.0f} s; report: {page}"),
         *([escape(f"recorded: {stored}")] if stored is not None else []),
     )

@@ -128,6 +128,13 @@ def alarms_of(campaigns):
     return [[one.seed for one in campaigns], len(wrong), len(vague), total, 1 - 0.05 ** (1 / total)]
 
 
+def drawn_row(one):
+    """A campaign of random problems as its row shows it."""
+    (seed, wrong, vague, total, _), ratios = alarms_of([one]), [of for of in one.ratios if of["values"]]
+    within = [[of.within, of["values"], of.largest] for of in ratios]
+    return [seed, total, one.agreeing, vague, one.comparisons, wrong, one.largest, within, dated(one)]
+
+
 def repeated(one):
     """What comparisons share that differ by the friction of their cases alone; None where friction counts."""
     if one.quantity not in (*SCALARS, "pressure"):
@@ -221,8 +228,8 @@ def credibility(data, dates):
     ends = ("difference", "uncertainty")
     yield "between|agree", [[agree(of), *(largest(of, end) for end in ends)] for of in pairs]
     yield "part|files", [one.of("files", "statements") for one in e.code.parts]
-    yield "problem|verdict", [one.alarms for one in drawn]
-    yield "random|seed", [[one, alarms_of([one]), len(one.alarms), one.ratios] for one in drawn]
+    yield "problem|verdict", [alarm for one in drawn for alarm in one.alarms]
+    yield "random|seed", [drawn_row(one) for one in drawn]
     every = [law for case in cases for law in case.invariants]
     laws = group(every, lambda law: re.sub(", (coating|interface|layer) [0-9]+$|, substrate$", "", law.name))
     sources = {name: group(of, lambda law: law.source).values() for name, of in laws.items()}

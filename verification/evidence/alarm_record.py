@@ -12,8 +12,6 @@ from scipy.special import betaincinv
 from verification.judging.verdict import Outcome
 from verification.running.json_records import RecordFile
 
-SCHEMA = "coatcheck-alarms/4"
-READABLE = (SCHEMA,)
 KINDS = ("round contacts", "thin films", "ellipses")
 # Of log10 error/U: the ends of the bins; below the first and above the last all is counted in the outermost.
 DECADES = tuple(float(x) for x in np.arange(-5, 1.01, 0.25))
@@ -73,14 +71,14 @@ class Campaign:
     source: str = ""
 
     @property
-    def false_alarms(self) -> tuple[Alarm, ...]:
-        """The verdicts that claim an error, or have no result, where there is no error."""
-        return tuple(one for one in self.alarms if one.outcome is not Outcome.INCONCLUSIVE)
+    def wrong(self) -> set[str]:
+        """Problems with a verdict that claims an error where there is none, or without a result."""
+        return {one.case for one in self.alarms if one.outcome is not Outcome.INCONCLUSIVE}
 
     @property
-    def inconclusive(self) -> tuple[Alarm, ...]:
-        """The verdicts that find U above its cap."""
-        return tuple(one for one in self.alarms if one.outcome is Outcome.INCONCLUSIVE)
+    def vague(self) -> set[str]:
+        """Problems with a verdict that finds U above its cap."""
+        return {one.case for one in self.alarms if one.outcome is Outcome.INCONCLUSIVE}
 
 
 @dataclass(frozen=True)
@@ -103,12 +101,7 @@ class AlarmRecord:
     @property
     def wrong(self) -> int:
         """Number of problems with a false alarm."""
-        return len({alarm.case for one in self.campaigns for alarm in one.false_alarms})
-
-    @property
-    def vague(self) -> int:
-        """Number of problems with an inconclusive verdict."""
-        return len({alarm.case for one in self.campaigns for alarm in one.inconclusive})
+        return sum(len(one.wrong) for one in self.campaigns)
 
     @property
     def rate(self) -> float:
@@ -118,13 +111,6 @@ class AlarmRecord:
         """
         return float(betaincinv(self.wrong + 1, self.problems - self.wrong, 0.95))
 
-    @property
-    def counts(self) -> dict[str, tuple[int, ...]]:
-        """Values of each method in the bins of ``DECADES``."""
-        every = [r for one in self.campaigns for r in one.ratios if r.values]
-        of = {source: [r.counts for r in every if r.source == source] for source in (r.source for r in every)}
-        return {source: tuple(map(sum, zip(*found, strict=True))) for source, found in of.items()}
 
-
-_FILE = RecordFile(AlarmRecord, "alarms.json", READABLE, "false alarms", "measure it again")
+_FILE = RecordFile(AlarmRecord, "alarms.json", ("coatcheck-alarms/4",), "false alarms", "measure it again")
 write_record, read_record = _FILE.write, _FILE.read

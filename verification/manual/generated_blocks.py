@@ -153,8 +153,7 @@ def false_alarms() -> str:
     assert record is not None
     drawn, of_values = [], []
     for one in record.campaigns:
-        vague = len({alarm.case for alarm in one.inconclusive})
-        counts = one.problems, one.agreeing, vague, one.comparisons, len(one.false_alarms)
+        counts = one.problems, one.agreeing, len(one.vague), one.comparisons, len(one.wrong)
         drawn.append([one.kind, str(one.seed), *map(str, counts), f"{one.largest:.2f}"])
         for r in one.ratios:
             if r.values:

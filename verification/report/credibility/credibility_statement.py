@@ -213,14 +213,12 @@ def _alarms(evidence: Evidence) -> list[Part]:
     if record is None:
         text = NO_RECORD.format("false alarms", "python tests/tools alarms")
         return [Part(text, title="False alarms", anchor="alarms")]
-    panels = [
-        Panel(
-            source_label(source),
-            draw_histogram(DECADES, counts, f"Error over uncertainty of {source_label(source)}"),
-            f"{sum(counts)} values",
-        )
-        for source, counts in record.counts.items()
-    ]
+    panels = []
+    for source in METHODS:
+        found = [r.counts for one in record.campaigns for r in one.ratios if r.source == source and r.values]
+        if counts := [sum(column) for column in zip(*found, strict=True)]:
+            figure = draw_histogram(DECADES, counts, f"Error over uncertainty of {source_label(source)}")
+            panels.append(Panel(source_label(source), figure, f"{sum(counts)} values"))
     histograms = Gallery((), panels, stated("ratios")) if panels else None
     drawn = table_of(
         "Each kind and seed.",
@@ -230,9 +228,9 @@ def _alarms(evidence: Evidence) -> list[Part]:
             ("seed", lambda one: str(one.seed)),
             ("problems", lambda one: one.problems),
             ("agree throughout", lambda one: one.agreeing),
-            ("inconclusive", lambda one: len({alarm.case for alarm in one.inconclusive})),
+            ("inconclusive", lambda one: len(one.vague)),
             ("comparisons", lambda one: one.comparisons),
-            ("false alarms", lambda one: len(one.false_alarms)),
+            ("with a false alarm", lambda one: len(one.wrong)),
             ("largest difference / U", lambda one: f"{one.largest:.2f}"),
             *((f"within U, {source_label(name)}", partial(_within, source=name)) for name in METHODS),
             ("made", lambda one: f"{one.started[:10]}, {(one.commit or 'no commit')[:8]}"),
