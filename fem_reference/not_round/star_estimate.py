@@ -59,7 +59,7 @@ class StarEstimate:
 
         All at the same w, the share of the way to the own edge. A change at one point may be small by chance:
         within one wave of the polynomial around the contact, and next to w, the largest counts; nearer to the
-        edge than its last wave, where no condition holds the pressure, the largest around the contact.
+        edge than its last wave, where no condition holds the pressure, the largest of all there.
         """
         w, turn = 1 - np.geomspace(1, 1e-4, 60), np.linspace(0, np.pi, 97)
         pressures = self.fine, self.companion, self.lower
@@ -67,7 +67,7 @@ class StarEstimate:
         wave = 2 * round(turn.size / self.fine.degree) + 1
         largest = maximum_filter(change, (5, wave), mode=("nearest", "mirror"))
         last = w > 1 - self._last_wave
-        largest[last] = largest[last].max(axis=1, keepdims=True)
+        largest[last] = largest[last].max()
         here, inwards = (
             RegularGridInterpolator((np.append(w, 1.0), turn), np.vstack([one, one[-1:]]))
             for one in (largest, np.maximum.accumulate(largest))

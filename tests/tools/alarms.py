@@ -184,13 +184,13 @@ def counted(results: Sequence[CaseResult], kind: str, seed: int, info: RunInfo) 
         info.machine,
         dict(info.versions),
         tuple(_ratios(results, source) for source in METHODS),
-        source_hash("alarms"),
+        source_hash("alarms" if kind == KINDS[-1] else "alarms of spheres"),
     )
 
 
 def with_campaign(record: AlarmRecord | None, new: Campaign) -> AlarmRecord:
     """``record`` with ``new`` in place of one of its kind and seed; those on other code are left out."""
-    kept = [one for one in record.campaigns if one.source == new.source] if record else []
+    kept = [one for one in record.campaigns if one.source == source_hash(one.judged)] if record else []
     kept = [one for one in kept if (one.kind, one.seed) != (new.kind, new.seed)]
     return AlarmRecord(tuple(sorted((*kept, new), key=lambda one: (KINDS.index(one.kind), one.seed))))
 

@@ -71,6 +71,11 @@ class Campaign:
     source: str = ""
 
     @property
+    def judged(self) -> str:
+        """What ``source`` is the hash of, as ``source_hash`` names it."""
+        return "alarms" if self.kind == KINDS[-1] else "alarms of spheres"
+
+    @property
     def wrong(self) -> set[str]:
         """Problems with a verdict that claims an error where there is none, or without a result."""
         return {one.case for one in self.alarms if one.outcome is not Outcome.INCONCLUSIVE}

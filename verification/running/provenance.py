@@ -74,17 +74,22 @@ def commit(here: Path = ROOT) -> str | None:
 
 
 @cache
-def fingerprint(modules: tuple[str, ...] = CODE, packages: tuple[str, ...] = ("python", *PACKAGES)) -> str:
-    """SHA-256 over the source of ``modules`` and the versions of ``packages``.
+def fingerprint(
+    modules: tuple[str, ...] = CODE, packages: tuple[str, ...] = ("python", *PACKAGES), without: str = ""
+) -> str:
+    """SHA-256 over the source of ``modules``, ``without`` one package, and the versions of ``packages``.
 
     Results of equal fingerprints come from the same code; by default that is all of this program. It is read
     once: code that changes later is not the code that this process has loaded.
     """
     known = versions()
     found = hashlib.sha256(repr([(name, known[name]) for name in packages]).encode())
+    left_out = ROOT.joinpath(*without.split(".")) if without else None
     for module in modules:
         place = ROOT.joinpath(*module.split("."))
         for path in sorted(place.rglob("*.py")) or [place.with_suffix(".py")]:
+            if left_out in path.parents:
+                continue
             found.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
     return found.hexdigest()
 

@@ -6,7 +6,7 @@ import pytest
 from alarms import alarms, counted, with_campaign
 from synthetic_results import INFO, STEEL, contact, crashed, result_of
 
-from verification.evidence.alarm_record import read_record
+from verification.evidence.alarm_record import AlarmRecord, read_record
 from verification.judging.verdict import Outcome
 
 E, NU = STEEL
@@ -78,8 +78,8 @@ def test_the_record_keeps_each_kind_and_seed_of_one_code_and_adds_them_up():
         "thin films": (2, 0),
     }
     assert record.kinds[KIND].rate == pytest.approx(1 - 0.05 ** (1 / 4))  # none failed: (1 - p)^n = 5 %
-    another = replace(one, source="another")
-    assert with_campaign(record, another).campaigns == (another,)
+    on_other_code = AlarmRecord((replace(one, source="another"),))
+    assert with_campaign(on_other_code, two).campaigns == (two,)
 
 
 @pytest.mark.slow
