@@ -50,8 +50,7 @@ class Ratios:
 class Campaign:
     """``problems`` random problems of one ``kind`` and ``seed``, with provenance and seconds in total.
 
-    agreeing : problems in which all comparisons agree and all invariants hold.   source : hash of the code.
-    largest : of the difference over U in all comparisons.
+    agreeing : those without any alarm.   largest : difference over U.   source : hash of the code.
     """
 
     kind: str
