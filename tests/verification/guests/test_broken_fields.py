@@ -93,7 +93,7 @@ def exact(tmp_path_factory):
 
 def own_environment(result, problem, asked):
     """The answer of a function in an environment of its own."""
-    return own_python.answered(lambda **given: result, asked.model_dump())
+    return own_python.values_of(result, asked.model_dump())
 
 
 def same_environment(result, problem, asked):

@@ -14,8 +14,9 @@ from verification.cases.case_file import read_case, shipped_cases
 from verification.commands.common.known_folders import RECORDS
 from verification.evidence.fault_record import read_record
 from verification.guests.case_exam import claims_of, prepare, question_of
+from verification.guests.doors.own_python import called, keywords
 from verification.guests.doors.program_door import TimedAnswer
-from verification.guests.doors.serve_function import called, problem_of, values_of
+from verification.guests.doors.serve_function import problem_of, values_of
 from verification.guests.exam_subjects import DISC, PLANE, SPHERE, SQUARE, subject_of
 from verification.guests.guest_description import read_guest
 from verification.guests.guest_protocol import VERSION, GuestAnswer, LineOfPoints
@@ -75,9 +76,9 @@ class Examiner:
         question = question_of(case, exam, guest, claims_of(case, guest), {})
         given = {"protocol": VERSION, "id": question.id}
         try:
-            problem = problem_of(question)
-            solution = called(lambda **given: ADAPTERS[method].solve(**given | own), problem, {})
-            answer = GuestAnswer(**given, **plain(vars(values_of(solution, problem, question))))
+            words = keywords(question.model_dump()) | own
+            solution = called(ADAPTERS[method].solve, words)
+            answer = GuestAnswer(**given, **plain(vars(values_of(solution, problem_of(question), question))))
         except Exception as error:
             answer = GuestAnswer(**given, error=str(error)[:500])
         result = judged(guest, case, exam, [TimedAnswer(answer, 0.0)])

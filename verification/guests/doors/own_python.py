@@ -1,7 +1,8 @@
 """The door of Python functions in an environment of their own: PYTHON own_python.py MODULE:FUNCTION.
 
 This file needs numpy alone, so that a code which cannot share coatcheck's environment stays in its own. It
-answers as ``serve_function`` does, without whole planes and without solutions that are sampled as they are.
+answers as ``serve_function`` does, which calls functions by it too, but without uncertainties, whole planes,
+and solutions that are sampled as they are.
 """
 
 from __future__ import annotations
@@ -12,6 +13,8 @@ import json
 import os
 import sys
 import traceback
+from collections.abc import Callable, Mapping
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -24,18 +27,21 @@ AROUND = np.concatenate([1 - np.geomspace(1e-4, 0.99, 60)[::-1], [1.0], 1 + np.g
 
 
 def keywords(question: dict[str, Any]) -> dict[str, Any]:
-    """The problem as the keywords of a solver, without those that are nothing."""
+    """The problem as the keywords of a solver; what a problem may lack is given too, as nothing."""
 
     def layers(found: list[dict[str, float]]) -> tuple[Any, ...]:
         return tuple((c["E"], c["nu"], c["thickness"]) for c in found)
 
-    found = {k: v for k, v in question["problem"].items() if v is not None} | question["parameter"]
+    problem = question["problem"]
+    nothing: dict[str, Any] = {} if "side" in problem else {"friction": 0.0}
+    nothing |= {"ball": None} if "load" in problem else {}
+    found = nothing | problem | question["parameter"]
     found |= {
         "coatings": layers(found["coatings"]),
         "substrate": (found["substrate"]["E"], found["substrate"]["nu"]),
     }
-    if "ball" in found:
-        found["ball"] = found["ball"]["E"], found["ball"]["nu"], layers(found["ball"]["coatings"])
+    if ball := found.get("ball"):
+        found["ball"] = ball["E"], ball["nu"], layers(ball["coatings"])
     if "radius_x" in found:
         radii = found.pop("radius_x"), found.pop("radius_y")
         found |= {"indenter": ("ellipsoid", radii), "radius": (radii[0] * radii[1]) ** 0.5}
@@ -50,47 +56,63 @@ def called(function: Any, given: dict[str, Any]) -> Any:
     return function(**given)
 
 
+def entry(result: Any, name: str) -> Any:
+    """Entry of a mapping or attribute of an object of this ``name``; None where it has none."""
+    return result.get(name) if isinstance(result, Mapping) else getattr(result, name, None)
+
+
 def field(result: Any, name: str, x: Any, y: Any, z: Any, layers: list[int]) -> Any:
     """Values of a function of the result at points, a call for each layer; None where it has none."""
-    function = result.get(name) if isinstance(result, dict) else getattr(result, name, None)
+    function = entry(result, name)
     if function is None:
         return None
     found = np.empty((*COMPONENTS[name][0], x.size))
     for layer in sorted(set(layers)):
         at = np.flatnonzero(np.array(layers) == layer)
-        try:
-            value = at_points(function, name, x[at], y[at], z[at], layer)
-        except NotImplementedError:
-            raise
-        except Exception as error:
-            error.place = first_point(function, name, x[at], y[at], z[at], layer)  # type: ignore[attr-defined]
-            raise
+        value = at_points(function, name, COMPONENTS[name][0], x[at], y[at], z[at], layer=layer)
         if value is None:
             return None
         found[..., at] = value
     return found
 
 
-def at_points(function: Any, name: str, x: Any, y: Any, z: Any, layer: int) -> Any:
-    """Values of a function of the result at points of one layer, checked; None where it gives none."""
-    of = {"layer": layer} if "layer" in inspect.signature(function).parameters else {}
-    value = function(x, y) if name == "pressure" else function(x, y, z, **of)
-    if value is None:
-        return None
-    value, shape = np.asarray(value, dtype=float), (*COMPONENTS[name][0], x.size)
-    if value.shape != shape:
-        raise ValueError(f"{name} returns an array of shape {value.shape}; {shape} is needed")
-    return value
+def at_points(function: Any, name: str, components: tuple[int, ...], *points: Any, **of: Any) -> Any:
+    """Values of a function at points x, y, z, of ``components`` each; None where it gives none.
+
+    of : layer and body, given where the function takes them.   An error has the first ``place`` that it is
+    of: at which the function fails by itself.
+    """
+
+    def values(*points: Any) -> Any:
+        value = function(*points[:2]) if name.startswith("pressure") else function(*points, **of)
+        return None if value is None else shaped(name, value, (*components, *points[0].shape))
+
+    if "layer" in of and "layer" not in inspect.signature(function).parameters:
+        del of["layer"]
+    try:
+        return values(*points)
+    except NotImplementedError:
+        raise
+    except Exception as error:
+        error.place = _first_place(values, *points)  # type: ignore[attr-defined]
+        raise
 
 
-def first_point(function: Any, name: str, x: Any, y: Any, z: Any, layer: int) -> str:
-    """The first of several points, at which a function fails by itself; "" where it fails at none."""
-    for i in range(x.size if x.size > 1 else 0):
+def _first_place(values: Any, *points: Any) -> str:
+    for at in zip(*points, strict=True) if points[0].ndim == 1 and points[0].size > 1 else ():
         try:
-            at_points(function, name, x[i : i + 1], y[i : i + 1], z[i : i + 1], layer)
+            values(*(np.array([v]) for v in at))
         except Exception:
-            return f", first at x, y, z = {x[i]:.4g}, {y[i]:.4g}, {z[i]:.4g}"
+            return f", first at x, y, z = {', '.join(f'{v:.4g}' for v in at)}"
     return ""
+
+
+def shaped(name: str, value: Any, shape: tuple[int, ...]) -> Any:
+    """``value`` as an array of that shape. Raises ValueError for any other."""
+    found = np.asarray(value, dtype=float)
+    if found.shape != shape:
+        raise ValueError(f"{name} returns an array of shape {found.shape}; {shape} is needed")
+    return found
 
 
 def largest_tension(result: Any, question: dict[str, Any]) -> dict[str, float]:
@@ -104,9 +126,8 @@ def largest_tension(result: Any, question: dict[str, Any]) -> dict[str, float]:
     return {"largest_tension": float(sigma[0, 0, i]), "tension_place": float(x[i])}
 
 
-def answered(function: Any, question: dict[str, Any]) -> dict[str, Any]:
+def values_of(result: Any, question: dict[str, Any]) -> dict[str, Any]:
     """The values by line and quantity, with the reasons of those that are missing or failed."""
-    result = called(function, keywords(question))
     found: dict[str, Any] = {"values": {}, "missing": {}, "failed": {}}
 
     def put(line: str, quantities: list[str], make: Any) -> None:
@@ -116,14 +137,14 @@ def answered(function: Any, question: dict[str, Any]) -> dict[str, Any]:
             found["values"].setdefault(line, {}).update(wanted)
         except NotImplementedError as error:
             found["missing"].setdefault(line, {}).update(
-                dict.fromkeys(quantities, str(error) or "not implemented")
+                dict.fromkeys(quantities, one_line(error) or "not implemented")
             )
         except Exception as error:
             found["failed"].setdefault(line, {}).update(dict.fromkeys(quantities, message(error)))
 
-    get: Any = result.get if isinstance(result, dict) else lambda name: getattr(result, name, None)
     for name in question["contact"]:
-        put("contact", [name], lambda name=name: {} if get(name) is None else {name: float(get(name))})
+        number = entry(result, name)
+        put("contact", [name], lambda name=name, v=number: {} if v is None else {name: float(v)})
     peaks = {"largest_tension", "tension_place"} & set(question["contact"])
     if peaks - set(found["values"].get("contact", ())) and question["edge"]:
         put("contact", sorted(peaks), lambda: largest_tension(result, question))
@@ -140,37 +161,53 @@ def answered(function: Any, question: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
+def one_line(error: BaseException) -> str:
+    """The text of an exception, without line ends."""
+    return " ".join(str(error).split())[:400]
+
+
 def message(error: BaseException) -> str:
     """Type, text, point and line of an exception, of the guest's own files where it passed them."""
     frames = traceback.extract_tb(error.__traceback__)
     frame = [*frames[-1:], *(f for f in frames if f.filename.startswith(os.getcwd()))][-1]
     where = f"{os.path.basename(frame.filename)}, line {frame.lineno}"
-    text = " ".join(str(error).split())[:400] + getattr(error, "place", "")
-    return f"{type(error).__name__}: {text} ({where})"
+    return f"{type(error).__name__}: {one_line(error)}{getattr(error, 'place', '')} ({where})"
 
 
-def main(place: str) -> None:
-    """Answer every line of standard input; what the function prints goes to standard error."""
+def answer_of(
+    place: str,
+    question: dict[str, Any],
+    values_of: Callable[[Any], dict[str, Any]],
+    refusals: tuple[type[Exception], ...] = (NotImplementedError,),
+) -> dict[str, Any]:
+    """The answer of the function at ``place``, MODULE:FUNCTION; an exception becomes an answer too."""
+    answer = {"protocol": question["protocol"], "id": question["id"]}
+    try:
+        module, _, name = place.partition(":")
+        function = reduce(getattr, name.split("."), importlib.import_module(module))
+        answer |= values_of(called(function, keywords(question)))
+    except refusals as error:
+        answer["unsupported"] = one_line(error) or "not implemented"
+    except Exception as error:
+        answer["error"] = message(error)
+    return answer
+
+
+def serve(answer: Callable[[str], str]) -> None:
+    """Answer every line of standard input; what a function prints goes to standard error."""
     replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     sys.path.insert(0, os.getcwd())
     for line in sys.stdin:
-        question = json.loads(line)
-        answer: dict[str, Any] = {
-            "protocol": question["protocol"],
-            "id": question["id"],
-            "units": question["units"],
-        }
-        try:
-            module, _, name = place.partition(":")
-            answer |= answered(getattr(importlib.import_module(module), name), question)
-        except NotImplementedError as error:
-            answer["unsupported"] = str(error) or "not implemented"
-        except Exception as error:
-            answer["error"] = message(error)
-        replies.write(f"COATCHECK {json.dumps(answer)}\n")
+        replies.write(f"COATCHECK {answer(line)}\n")
         replies.flush()
 
 
+def _answer(line: str) -> str:
+    question = json.loads(line)
+    found = answer_of(sys.argv[1], question, lambda result: values_of(result, question))
+    return json.dumps(found | {"units": question["units"]})
+
+
 if __name__ == "__main__":
-    main(sys.argv[1])
+    serve(_answer)

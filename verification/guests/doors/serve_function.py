@@ -10,23 +10,19 @@ numbers, pressure_uncertainty, stress_uncertainty, displacement_uncertainty. Or 
 two methods do.
 """
 
-import inspect
-import os
 import sys
-import traceback
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from importlib import import_module
+from functools import partial
 from typing import Any
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
+from verification.guests.doors.own_python import answer_of, at_points, entry, message, one_line, serve, shaped
 from verification.guests.exam_subjects import PLANE, Load, SquareLoad
 from verification.guests.guest_protocol import (
-    TOKEN,
-    VERSION,
     DiscProblem,
     EllipsoidProblem,
     GuestAnswer,
@@ -37,7 +33,7 @@ from verification.guests.guest_protocol import (
 )
 from verification.problem import point_answers
 from verification.problem.array_types import Array, Coatings
-from verification.problem.coated_contact import CoatedContact, PrescribedLoad, keywords
+from verification.problem.coated_contact import CoatedContact, PrescribedLoad
 from verification.problem.line_profile import Line, Profile
 from verification.problem.point_answers import FIELDS, FLAT, NotClaimed, Points, Sampled
 from verification.problem.quantity import BALL_PEAKS, DISPLACEMENTS, PEAKS, STRESSES
@@ -48,15 +44,6 @@ from verification.sampling.line_sampling import sample
 Numbers = dict[str, dict[str, Any]]
 
 
-class AtPoint(ValueError):
-    """An exception of a guest's function, whose message says at which point; its cause is the guest's own."""
-
-
-def _given(result: Any, name: str) -> Any:
-    """Entry of a mapping or attribute of an object of this ``name``; None where it has none."""
-    return result.get(name) if isinstance(result, Mapping) else getattr(result, name, None)
-
-
 class GuestFields(Sampled):
     """A guest's result as a source of what it has, with the uncertainties that it states."""
 
@@ -65,50 +52,30 @@ class GuestFields(Sampled):
 
     def gives(self, *names: str) -> bool:
         """Whether it has all these numbers or functions."""
-        return all(_given(self.result, name) is not None for name in names)
+        return all(entry(self.result, name) is not None for name in names)
 
     def sample(self, points: Points | None, quantity: str, uncertainty: bool = True) -> point_answers.Answer:
         """Value and uncertainty of a field at points, or of a number of the contact."""
         if points is None:
-            stated = _given(_given(self.result, "uncertainty"), quantity)
+            stated = entry(entry(self.result, "uncertainty"), quantity)
             return point_answers.Answer(
-                _number(_given(self.result, quantity)), _number(stated) if uncertainty else None
+                _number(entry(self.result, quantity)), _number(stated) if uncertainty else None
             )
         U = self._field(f"{quantity}_uncertainty", quantity, points) if uncertainty else None
         return point_answers.Answer(self._field(quantity, quantity, points), U)
 
     def _field(self, name: str, quantity: str, points: Points) -> Array | None:
         """Values of the function ``name`` at points, whose shape is that of ``quantity``."""
-        function = _given(self.result, name)
+        function = entry(self.result, name)
         if function is None:
             return None
         x, y, z = np.broadcast_arrays(
             *(np.asarray(v, dtype=float) for v in (points.x, points.y, points.z)), subok=True
         )
         of: dict[str, Any] = {} if points.body == FLAT else {"body": points.body}
-        if quantity == "stress" and "layer" in inspect.signature(function).parameters:
-            of["layer"] = points.layer
-
-        def called(x: Array, y: Array, z: Array) -> Array | None:
-            found = function(x, y) if quantity == "pressure" else function(x, y, z, **of)
-            return None if found is None else _shaped(name, found, (*FIELDS[quantity], *x.shape))
-
-        try:
-            return called(x, y, z)
-        except NotImplementedError:
-            raise
-        except Exception as error:
-            raise AtPoint(f"{error}{_first_point(called, x, y, z)}") from error
-
-
-def _first_point(called: Callable[..., Any], *points: Array) -> str:
-    """The first of several points, at which a function fails by itself; "" where it fails at none."""
-    for x, y, z in zip(*points, strict=True) if points[0].ndim == 1 and points[0].size > 1 else ():
-        try:
-            called(*(np.array([v]) for v in (x, y, z)))
-        except Exception:
-            return f", first at x, y, z = {x:.4g}, {y:.4g}, {z:.4g}"
-    return ""
+        of |= {"layer": points.layer} if quantity == "stress" else {}
+        found: Array | None = at_points(function, name, FIELDS[quantity], x, y, z, **of)
+        return found
 
 
 class AroundExact(GuestFields):
@@ -150,10 +117,10 @@ class Given:
             yield
         except (NotImplementedError, NotClaimed) as error:
             self.missing.setdefault(line, {}).update(
-                dict.fromkeys(quantities, _message(error) or "not implemented")
+                dict.fromkeys(quantities, one_line(error) or "not implemented")
             )
         except Exception as error:
-            self.failed.setdefault(line, {}).update(dict.fromkeys(quantities, _with_place(error)))
+            self.failed.setdefault(line, {}).update(dict.fromkeys(quantities, message(error)))
 
 
 def values_of(result: Any, problem: Load, question: Question) -> Given:
@@ -215,14 +182,14 @@ def _sampled(solution: Any, result: Any, problem: Load, asked: LineOfPoints) -> 
 
 def _of_plane(result: Any, asked: LineOfPoints) -> dict[str, Array] | None:
     """The stresses of a whole plane at points, by a cubic spline; None where the plane is not given there."""
-    stress_plane, nodes = (_given(result, name) for name in ("stress_plane", "nodes"))
+    stress_plane, nodes = (entry(result, name) for name in ("stress_plane", "nodes"))
     if stress_plane is None or nodes is None:
         return None
     nodes = np.asarray(nodes, dtype=float)
     x, y = np.array(asked.x), np.array(asked.y)
     if nodes.ndim != 1 or max(abs(x).max(), abs(y).max()) > min(-nodes[0], nodes[-1]):
         return None
-    sigma = _shaped("stress_plane", stress_plane(asked.z[0], asked.layer[0]), (3, 3, *2 * nodes.shape))
+    sigma = shaped("stress_plane", stress_plane(asked.z[0], asked.layer[0]), (3, 3, *2 * nodes.shape))
     return {name: RectBivariateSpline(nodes, nodes, sigma[c]).ev(x, y) for name, c in STRESSES.items()}
 
 
@@ -261,50 +228,6 @@ def _on_line(guest: GuestFields, asked: LineOfPoints, given: Given) -> Iterator[
         yield Profile(quantity, asked.line, x, value, "guest", U)
 
 
-def _shaped(name: str, value: Any, shape: tuple[int, ...]) -> Array:
-    found = np.asarray(value, dtype=float)
-    if found.shape != shape:
-        raise ValueError(f"{name} returns an array of shape {found.shape}; {shape} is needed")
-    return found
-
-
-def main(place: str) -> None:
-    """GuestAnswer every line of standard input."""
-    replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)
-    sys.path.insert(0, os.getcwd())
-    for line in sys.stdin:
-        question = Question.model_validate_json(line)
-        replies.write(f"{TOKEN} {answer(place, question).model_dump_json()}\n")
-        replies.flush()
-
-
-def answer(place: str, question: Question) -> GuestAnswer:
-    """The answer of the function at ``place``; an exception becomes an answer too."""
-    given: dict[str, Any] = {"protocol": VERSION, "id": question.id}
-    try:
-        module, _, name = place.partition(":")
-        function: Any = import_module(module)
-        for part in name.split("."):
-            function = getattr(function, part)
-        problem = problem_of(question)
-        found = values_of(called(function, problem, question.parameter), problem, question)
-        return GuestAnswer(**given, **plain(vars(found)))
-    except (NotImplementedError, NotClaimed) as error:
-        return GuestAnswer(**given, unsupported=_message(error) or "not implemented")
-    except Exception as error:
-        return GuestAnswer(**given, error=_with_place(error))
-
-
-def _with_place(error: Exception) -> str:
-    """The message of ``error`` with the last line of the guest's own code, where there is one."""
-    cause = error.__cause__ if isinstance(error, AtPoint) and error.__cause__ else error
-    frames = traceback.extract_tb(cause.__traceback__)
-    own = [frame for frame in frames if frame.filename.startswith(os.getcwd())] or frames[-1:]
-    where = f" ({os.path.basename(own[-1].filename)}, line {own[-1].lineno})" if own else ""
-    return f"{type(cause).__name__}: {_message(error)}{where}"
-
-
 def problem_of(question: Question) -> Load:
     """The problem of ``question`` in the units of the guest."""
     p = question.problem
@@ -327,24 +250,17 @@ def _layers(coatings: list[Layer]) -> Coatings:
     return tuple((c.E, c.nu, c.thickness or 0.0) for c in coatings)
 
 
-# What a problem may lack: given to every solver that takes it, left out where one does not.
-NOTHING: dict[str, Any] = {"friction": 0.0, "coatings": (), "ball": None}
+def answer(place: str, line: str) -> str:
+    """The answer of the function at ``place`` to a line with a question."""
+    question = Question.model_validate_json(line)
 
+    def values(result: Any) -> dict[str, Any]:
+        found: dict[str, Any] = plain(vars(values_of(result, problem_of(question), question)))
+        return found
 
-def called(function: Callable[..., Any], problem: Load, parameter: dict[str, float]) -> Any:
-    """``function`` called with the problem by keywords; one that it lacks must be nothing."""
-    given = {name: nothing for name, nothing in NOTHING.items() if hasattr(problem, name)} | keywords(problem)
-    accepted = inspect.signature(function).parameters
-    if not any(p.kind is inspect.Parameter.VAR_KEYWORD for p in accepted.values()):
-        for name, nothing in NOTHING.items():
-            if name in given and name not in accepted and given[name] == nothing:
-                del given[name]
-    return function(**given, **parameter)
-
-
-def _message(error: BaseException) -> str:
-    return " ".join(str(error).split())[:500]
+    found = answer_of(place, question.model_dump(), values, (NotImplementedError, NotClaimed))
+    return GuestAnswer(**found).model_dump_json()
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    serve(partial(answer, sys.argv[1]))
