@@ -5,13 +5,11 @@ from functools import partial
 
 import numpy as np
 import pytest
-from guest_exams import GUEST, prepared, question
+from guest_exams import prepared, question, verdicts_on
 
 from verification.guests.doors import own_python
-from verification.guests.doors.program_door import TimedAnswer
 from verification.guests.doors.serve_function import values_of
 from verification.guests.guest_protocol import VERSION, GuestAnswer
-from verification.guests.guest_verdicts import judged
 from verification.judging.verdict import Outcome
 from verification.problem.quantity import DISPLACEMENTS, PEAKS, STRESSES
 from verification.running.json_records import plain
@@ -103,8 +101,7 @@ def same_environment(result, problem, asked):
 def verdicts(case, exam, result, door):
     asked = question(case, exam)
     answer = GuestAnswer(protocol=VERSION, id=asked.id, **door(result, case.problem, asked))
-    found = judged(GUEST, case, exam, [TimedAnswer(answer, 0.0)]).verdicts
-    return {(claim.quantity, claim.line): verdict for claim, verdict in found}
+    return verdicts_on(case, exam, answer)
 
 
 @pytest.mark.parametrize("door", [same_environment, own_environment])

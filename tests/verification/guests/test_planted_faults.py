@@ -9,22 +9,18 @@ import numpy as np
 import pytest
 from faults_planted.fault_catalogue import FAULTS
 from faults_planted.fault_planting import planted
+from guest_exams import prepared, question, verdicts_on
 
 from verification.cases.case_file import read_case, shipped_cases
 from verification.commands.common.known_folders import RECORDS
 from verification.evidence.fault_record import read_record
-from verification.guests.case_exam import claims_of, prepare, question_of
 from verification.guests.doors.own_python import called, keywords
-from verification.guests.doors.program_door import TimedAnswer
 from verification.guests.doors.serve_function import problem_of, values_of
-from verification.guests.exam_subjects import DISC, PLANE, SPHERE, SQUARE, subject_of
+from verification.guests.exam_subjects import DISC, PLANE, SPHERE, SQUARE
 from verification.guests.guest_description import read_guest
 from verification.guests.guest_protocol import VERSION, GuestAnswer, LineOfPoints
-from verification.guests.guest_verdicts import judged
 from verification.judging.verdict import Outcome
 from verification.problem.coated_contact import CoatedContact
-from verification.running.case_result import from_json
-from verification.running.checked_files import read_checked
 from verification.running.json_records import plain
 
 OWN = {"semianalytic": "semianalytic", "fem_reference": "finite_elements"}
@@ -54,11 +50,7 @@ class Examiner:
 
     def exam(self, name, load):
         if (name, load) not in self.known:
-            case = subject_of(replace(read_case(shipped_cases()[name]), numerics={}), load)
-            path = self.folder / f"{case.name}.json"
-            if not path.exists():
-                prepare(case, path)
-            self.known[name, load] = case, from_json(read_checked(path))
+            self.known[name, load] = prepared(name, self.folder, load, numerics={})
         return self.known[name, load]
 
     def failing(self, method, name, load, numbers_only=False):
@@ -73,16 +65,15 @@ class Examiner:
         own = own if load == SPHERE and "edge_correction" in own else {}
         if load == SPHERE and method == "semianalytic" and stated.approach is not None:
             own = {"load": None, "approach": stated.approach}
-        question = question_of(case, exam, guest, claims_of(case, guest), {})
-        given = {"protocol": VERSION, "id": question.id}
+        asked = question(case, exam, guest)
+        given = {"protocol": VERSION, "id": asked.id}
         try:
-            words = keywords(question.model_dump()) | own
-            solution = called(ADAPTERS[method].solve, words)
-            answer = GuestAnswer(**given, **plain(vars(values_of(solution, problem_of(question), question))))
+            solution = called(ADAPTERS[method].solve, keywords(asked.model_dump()) | own)
+            answer = GuestAnswer(**given, **plain(vars(values_of(solution, problem_of(asked), asked))))
         except Exception as error:
             answer = GuestAnswer(**given, error=str(error)[:500])
-        result = judged(guest, case, exam, [TimedAnswer(answer, 0.0)])
-        return {(c.quantity, c.line, v.outcome) for c, v in result.verdicts if v.outcome not in PASSED}
+        found = verdicts_on(case, exam, answer, guest)
+        return {(*key, verdict.outcome) for key, verdict in found.items() if verdict.outcome not in PASSED}
 
     def caught(self, fault):
         """Where the examination shows ``fault``, the cheapest questions first; None where it does not."""
