@@ -2,12 +2,11 @@
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from quick_case import QUICK, coatcheck
-from synthetic_results import INFO, STEEL, contact, result_of
+from synthetic_results import INFO, STEEL, contact, result_of, run_directory
 
 from verification.cases.case_file import default_cases
 from verification.cases.published_file import published_cases
@@ -22,8 +21,6 @@ from verification.regression.baseline_change import (
 )
 from verification.regression.baseline_file import path_in, points_by_line, read_baseline, write_baseline
 from verification.regression.number_drift import RELATIVE, State, drift, measured
-from verification.report.report_material import ReportMaterial
-from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, to_json
 from verification.running.checked_files import write_checked
 
@@ -130,14 +127,6 @@ def test_an_update_keeps_every_reason_with_what_changed(tmp_path):
     assert changes["other"] == (stored.history[0].numbers // 2, None)
     assert case_drift(now, stored).state is State.SAME
     assert case_drift(RESULT, stored).state is State.DRIFTED
-
-
-def run_directory(folder: Path, results: list[CaseResult]) -> None:
-    """What a run leaves: the report with a checked file beside it for each case."""
-    folder.mkdir()
-    (folder / "report.json").write_text(report_json(ReportMaterial(results, INFO)))
-    for result in results:
-        write_checked(folder / "cases" / f"{result.name}.json", to_json(result))
 
 
 def test_the_command_refuses_in_one_sentence_and_writes_nothing(tmp_path):
