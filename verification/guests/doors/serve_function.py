@@ -11,7 +11,7 @@ two methods do.
 """
 
 import sys
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -20,23 +20,25 @@ from typing import Any
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
 
-from verification.guests.doors.own_python import answer_of, at_points, entry, message, one_line, serve, shaped
-from verification.guests.exam_subjects import PLANE, Load, SquareLoad
-from verification.guests.guest_protocol import (
-    DiscProblem,
-    EllipsoidProblem,
-    GuestAnswer,
-    Layer,
-    LineOfPoints,
-    Question,
-    SquareProblem,
+from verification.guests.doors.own_python import (
+    COMPONENTS,
+    answer_of,
+    at_points,
+    entry,
+    keywords,
+    message,
+    one_line,
+    serve,
+    shaped,
 )
+from verification.guests.exam_subjects import PLANE, Load, SquareLoad
+from verification.guests.guest_protocol import GuestAnswer, LineOfPoints, Question
 from verification.problem import point_answers
-from verification.problem.array_types import Array, Coatings
+from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact, PrescribedLoad
 from verification.problem.line_profile import Line, Profile
-from verification.problem.point_answers import FIELDS, FLAT, NotClaimed, Points, Sampled
-from verification.problem.quantity import BALL_PEAKS, DISPLACEMENTS, PEAKS, STRESSES
+from verification.problem.point_answers import FIELDS, FLAT, UNSUPPORTED, NotClaimed, Points, Sampled
+from verification.problem.quantity import BALL_PEAKS, PEAKS, STRESSES
 from verification.running.json_records import plain
 from verification.sampling.largest_tension import Search
 from verification.sampling.line_sampling import sample
@@ -195,59 +197,51 @@ def _of_plane(result: Any, asked: LineOfPoints) -> dict[str, Array] | None:
 
 def _on_line(guest: GuestFields, asked: LineOfPoints, given: Given) -> Iterator[Profile]:
     """Every quantity that the guest gives at points of the flat; nothing of a ball but its planes."""
-    x, y, z = (np.array(v) for v in (asked.x, asked.y, asked.z))
-    plane = None
+    x, plane = np.array(asked.x), None
     if asked.line == PLANE:
         with given.without(asked.line, STRESSES):
             plane = _of_plane(guest.result, asked)
-    found: dict[str, tuple[Array, Array | None]] = {name: (s, None) for name, s in (plane or {}).items()}
+    for quantity, sigma in (plane or {}).items():
+        yield Profile(quantity, asked.line, x, sigma, "guest")
+    for name, (_, parts) in COMPONENTS.items() if asked.body == FLAT else ():
+        wanted = [quantity for quantity in parts if quantity in asked.quantities]
+        found: point_answers.Answer = UNSUPPORTED
+        if wanted and (name != "stress" or plane is None):
+            with given.without(asked.line, wanted):
+                found = _in_layers(guest, name, asked)
+        value, U = found
+        for quantity in wanted if value is not None else ():
+            c = parts[quantity]
+            yield Profile(quantity, asked.line, x, value[c], "guest", None if U is None else U[c])
 
-    def fill(name: str, names: Mapping[str, Any], layers: Iterable[int | None]) -> None:
-        if not set(names) & set(asked.quantities):
-            return
-        with given.without(asked.line, set(names) & set(asked.quantities)):
-            parts: dict[str, tuple[Array, Array | None]] = {}
-            for layer in layers:
-                here = np.array(asked.layer) == layer if layer is not None else np.ones(x.shape, dtype=bool)
-                value, U = guest.sample(Points(x[here], y[here], z[here], layer), name)
-                for quantity, c in names.items() if value is not None else ():
-                    into = parts.setdefault(
-                        quantity, (np.empty(x.size), None if U is None else np.empty(x.size))
-                    )
-                    into[0][here] = value[c]
-                    if U is not None and into[1] is not None:
-                        into[1][here] = U[c]
-            found.update(parts)
 
-    if asked.body == FLAT:
-        fill("pressure", {"pressure": slice(None)}, [None])
-        if plane is None:
-            fill("stress", STRESSES, sorted(set(asked.layer)))
-        fill("displacement", {name: i for i, name in enumerate(DISPLACEMENTS)}, [None])
-    for quantity, (value, U) in found.items():
-        yield Profile(quantity, asked.line, x, value, "guest", U)
+def _in_layers(guest: GuestFields, name: str, asked: LineOfPoints) -> point_answers.Answer:
+    """A field at the points of a line; of a stress, which an interface parts, each layer by itself."""
+    x, y, z, layers = (np.array(v) for v in (asked.x, asked.y, asked.z, asked.layer))
+    if name != "stress":
+        return guest.sample(Points(x, y, z), name)
+    value, U = np.empty((2, *FIELDS[name], x.size))
+    stated = True
+    for layer in np.unique(layers).tolist():
+        here = layers == layer
+        part = guest.sample(Points(x[here], y[here], z[here], layer), name)
+        if part.value is None:
+            return UNSUPPORTED
+        value[..., here] = part.value
+        stated = stated and part.uncertainty is not None
+        if stated:
+            U[..., here] = part.uncertainty
+    return point_answers.Answer(value, U if stated else None)
 
 
 def problem_of(question: Question) -> Load:
     """The problem of ``question`` in the units of the guest."""
-    p = question.problem
-    substrate = (p.substrate.E, p.substrate.nu)
-    if isinstance(p, DiscProblem):
-        return PrescribedLoad(p.pressure, p.load_radius, _layers(p.coatings), substrate)
-    if isinstance(p, SquareProblem):
-        return SquareLoad(p.pressure, p.side, _layers(p.coatings), substrate)
-    if isinstance(p, EllipsoidProblem):
-        radii = (p.radius_x, p.radius_y)
-        mean = (p.radius_x * p.radius_y) ** 0.5
-        return CoatedContact(
-            mean, p.load, _layers(p.coatings), substrate, p.friction, None, ("ellipsoid", radii)
-        )
-    ball = None if p.ball is None else (p.ball.E, p.ball.nu, _layers(p.ball.coatings))
-    return CoatedContact(p.radius, p.load, _layers(p.coatings), substrate, p.friction, ball)
-
-
-def _layers(coatings: list[Layer]) -> Coatings:
-    return tuple((c.E, c.nu, c.thickness or 0.0) for c in coatings)
+    words = keywords(question.model_dump() | {"parameter": {}})
+    kind: Any = CoatedContact
+    if "load" not in words:
+        kind = SquareLoad if "side" in words else PrescribedLoad
+    found: Load = kind(**words)
+    return found
 
 
 def answer(place: str, line: str) -> str:
