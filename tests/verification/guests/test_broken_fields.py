@@ -95,7 +95,7 @@ def own_environment(result, problem, asked):
 
 
 def same_environment(result, problem, asked):
-    return plain(vars(values_of(result, problem, asked)))
+    return plain(values_of(result, problem, asked))
 
 
 def verdicts(case, exam, result, door):
@@ -128,6 +128,16 @@ def test_keys_that_are_not_there_or_not_known_cost_no_other(exact, door):
     found = verdicts(case, exam, {k: v for k, v in right.items() if k != "approach"}, door)
     assert [q for q, line in found if found[q, line] != whole[q, line]] == ["approach"]
     assert found["approach", "contact"].outcome is NONE
+
+
+@pytest.mark.parametrize("door", [same_environment, own_environment])
+def test_uncertainties_that_are_stated_are_those_of_the_answer(exact, door):
+    case, exam, right = exact
+    stated = {"uncertainty": {"approach": 1e-9}}
+    stated["displacement_uncertainty"] = lambda x, y, z: np.full((3, x.size), 1e-12)
+    found = door(right | stated, case.problem, question(case, exam))["uncertainty"]
+    assert found.pop("contact") == {"approach": 1e-9}
+    assert {q for by in found.values() for q in by} == set(DISPLACEMENTS)
 
 
 def test_a_failure_inside_a_package_names_the_line_of_the_adapter(tmp_path, monkeypatch):

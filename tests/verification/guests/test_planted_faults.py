@@ -3,7 +3,6 @@
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,9 +17,15 @@ from verification.guests.doors.own_python import called, keywords
 from verification.guests.doors.serve_function import problem_of, values_of
 from verification.guests.exam_subjects import DISC, PLANE, SPHERE, SQUARE
 from verification.guests.guest_description import read_guest
-from verification.guests.guest_protocol import VERSION, GuestAnswer, LineOfPoints
+from verification.guests.guest_protocol import (
+    VERSION,
+    GuestAnswer,
+    Layer,
+    LineOfPoints,
+    Question,
+    SphereProblem,
+)
 from verification.judging.verdict import Outcome
-from verification.problem.coated_contact import CoatedContact
 from verification.running.json_records import plain
 
 OWN = {"semianalytic": "semianalytic", "fem_reference": "finite_elements"}
@@ -69,7 +74,7 @@ class Examiner:
         given = {"protocol": VERSION, "id": asked.id}
         try:
             solution = called(ADAPTERS[method].solve, keywords(asked.model_dump()) | own)
-            answer = GuestAnswer(**given, **plain(vars(values_of(solution, problem_of(asked), asked))))
+            answer = GuestAnswer(**given, **plain(values_of(solution, problem_of(asked), asked)))
         except Exception as error:
             answer = GuestAnswer(**given, error=str(error)[:500])
         found = verdicts_on(case, exam, answer, guest)
@@ -131,9 +136,10 @@ def test_stresses_of_a_whole_plane_are_interpolated():
         "z": z,
         "layer": [0] * 3,
     }
-    problem = CoatedContact(1.0, 1.0, (), (1e3, 0.3))
-    asked = SimpleNamespace(contact=(), lines=[LineOfPoints(**line)], edge=None)
-    values = values_of(result, problem, asked).values
+    solid = {"coatings": [], "substrate": Layer(E=1e3, nu=0.3)}
+    problem = SphereProblem(radius=1.0, load=1.0, friction=0.0, **solid)
+    asked = Question(id="x", problem=problem, contact=[], lines=[LineOfPoints(**line)])
+    values = values_of(result, problem_of(asked), asked)["values"]
     exact = np.array(at) ** 3 + 0.6 * np.array(at[::-1])
     assert values[PLANE] == {"sigma_xz": approx(2 * exact), "sigma_yy": approx(4 * exact)}
 

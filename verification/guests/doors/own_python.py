@@ -1,8 +1,8 @@
 """The door of Python functions in an environment of their own: PYTHON own_python.py MODULE:FUNCTION.
 
 This file needs numpy alone, so that a code which cannot share coatcheck's environment stays in its own. It
-answers as ``serve_function`` does, which calls functions by it too, but without uncertainties, whole planes,
-and solutions that are sampled as they are.
+answers as ``serve_function`` does, which calls functions by it too, but without whole planes and without
+solutions that are sampled as they are.
 """
 
 from __future__ import annotations
@@ -13,7 +13,8 @@ import json
 import os
 import sys
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from functools import reduce
 from typing import Any
 
@@ -61,15 +62,21 @@ def entry(result: Any, name: str) -> Any:
     return result.get(name) if isinstance(result, Mapping) else getattr(result, name, None)
 
 
-def field(result: Any, name: str, x: Any, y: Any, z: Any, layers: list[int]) -> Any:
-    """Values of a function of the result at points, a call for each layer; None where it has none."""
-    function = entry(result, name)
+def field(result: Any, name: str, x: Any, y: Any, z: Any, layers: list[int], of: str = "") -> Any:
+    """Values of a function of the result at points; None where it has none.
+
+    A stress that takes ``layer`` is called for each layer.
+    of : the field whose components it has, where that is not its name.
+    """
+    function, components = entry(result, name), COMPONENTS[of or name][0]
     if function is None:
         return None
-    found = np.empty((*COMPONENTS[name][0], x.size))
+    if (of or name) != "stress" or "layer" not in inspect.signature(function).parameters:
+        return at_points(function, name, components, x, y, z)
+    found = np.empty((*components, x.size))
     for layer in sorted(set(layers)):
         at = np.flatnonzero(np.array(layers) == layer)
-        value = at_points(function, name, COMPONENTS[name][0], x[at], y[at], z[at], layer=layer)
+        value = at_points(function, name, components, x[at], y[at], z[at], layer=layer)
         if value is None:
             return None
         found[..., at] = value
@@ -79,16 +86,14 @@ def field(result: Any, name: str, x: Any, y: Any, z: Any, layers: list[int]) -> 
 def at_points(function: Any, name: str, components: tuple[int, ...], *points: Any, **of: Any) -> Any:
     """Values of a function at points x, y, z, of ``components`` each; None where it gives none.
 
-    of : layer and body, given where the function takes them.   An error has the first ``place`` that it is
-    of: at which the function fails by itself.
+    of : layer and body.   An error has the first ``place`` that it is of, at which the function fails by
+    itself.
     """
 
     def values(*points: Any) -> Any:
         value = function(*points[:2]) if name.startswith("pressure") else function(*points, **of)
         return None if value is None else shaped(name, value, (*components, *points[0].shape))
 
-    if "layer" in of and "layer" not in inspect.signature(function).parameters:
-        del of["layer"]
     try:
         return values(*points)
     except NotImplementedError:
@@ -117,6 +122,8 @@ def shaped(name: str, value: Any, shape: tuple[int, ...]) -> Any:
 
 def largest_tension(result: Any, question: dict[str, Any]) -> dict[str, float]:
     """The largest sigma_xx of the surface on y = 0 with its x, around the exact contact edge."""
+    if not question["edge"]:
+        return {}
     a = question["edge"] * AROUND
     x = np.concatenate([-a[::-1], a]) if question["problem"].get("friction") else -a[::-1]
     sigma = field(result, "stress", x, 0 * x, 0 * x, [0] * x.size)
@@ -126,39 +133,92 @@ def largest_tension(result: Any, question: dict[str, Any]) -> dict[str, float]:
     return {"largest_tension": float(sigma[0, 0, i]), "tension_place": float(x[i])}
 
 
-def values_of(result: Any, question: dict[str, Any]) -> dict[str, Any]:
-    """The values by line and quantity, with the reasons of those that are missing or failed."""
-    found: dict[str, Any] = {"values": {}, "missing": {}, "failed": {}}
+class Given:
+    """Values and uncertainties by line and quantity, with the reasons why others are missing or failed.
 
-    def put(line: str, quantities: list[str], make: Any) -> None:
+    refusals : exceptions that say that something is not given.
+    """
+
+    def __init__(self, refusals: tuple[type[Exception], ...] = (NotImplementedError,)) -> None:
+        self.found: dict[str, dict[str, dict[str, Any]]] = {
+            name: {} for name in ("values", "uncertainty", "missing", "failed")
+        }
+        self.refusals = refusals
+
+    def lacks(self, line: str, quantities: Iterable[str]) -> set[str]:
+        """Those of ``quantities`` that have no value on a line."""
+        return set(quantities) - set(self.found["values"].get(line, ()))
+
+    def put(self, line: str, quantity: str, value: Any, U: Any = None) -> None:
+        """One quantity; nothing where it is None."""
+        for name, one in (("values", value), ("uncertainty", U)) if value is not None else ():
+            if one is not None:
+                self.found[name].setdefault(line, {})[quantity] = one
+
+    @contextmanager
+    def without(self, line: str, quantities: Iterable[str]) -> Iterator[None]:
+        """An exception costs these quantities on this line, and no other."""
         try:
-            values = make() or {}
-            wanted = {q: values[q] for q in quantities if values.get(q) is not None}
-            found["values"].setdefault(line, {}).update(wanted)
-        except NotImplementedError as error:
-            found["missing"].setdefault(line, {}).update(
-                dict.fromkeys(quantities, one_line(error) or "not implemented")
-            )
+            yield
         except Exception as error:
-            found["failed"].setdefault(line, {}).update(dict.fromkeys(quantities, message(error)))
+            refused = isinstance(error, self.refusals)
+            reason = (one_line(error) or "not implemented") if refused else message(error)
+            by = self.found["missing" if refused else "failed"].setdefault(line, {})
+            by.update(dict.fromkeys(quantities, reason))
 
+    def answered(self, result: Any) -> dict[str, Any]:
+        """All of it, as parts of an answer. Raises NotImplementedError where ``result`` has nothing."""
+        if not any(self.found.values()):
+            names = "contact_radius, approach, peak_pressure, pressure, stress"
+            raise NotImplementedError(f"its result, {type(result).__name__}, has none of {names}")
+        return self.found
+
+
+def number(value: Any) -> float | None:
+    """A number of any shape as a float."""
+    return None if value is None else float(np.asarray(value, dtype=float).reshape(()))
+
+
+def values_of(
+    result: Any,
+    question: dict[str, Any],
+    refusals: tuple[type[Exception], ...] = (NotImplementedError,),
+    plane_of: Callable[[Any, dict[str, Any]], Any] = lambda result, line: None,
+    tension_of: Callable[[Any, dict[str, Any]], dict[str, float]] = largest_tension,
+) -> dict[str, Any]:
+    """The values by line and quantity, with the reasons of those that are missing or failed.
+
+    plane_of : the stresses on a line from a whole plane, None where it gives none.   tension_of : the largest
+    tension with its place.
+    """
+    given, uncertainty = Given(refusals), entry(result, "uncertainty")
     for name in question["contact"]:
-        number = entry(result, name)
-        put("contact", [name], lambda name=name, v=number: {} if v is None else {name: float(v)})
+        with given.without("contact", [name]):
+            given.put("contact", name, number(entry(result, name)), number(entry(uncertainty, name)))
     peaks = {"largest_tension", "tension_place"} & set(question["contact"])
-    if peaks - set(found["values"].get("contact", ())) and question["edge"]:
-        put("contact", sorted(peaks), lambda: largest_tension(result, question))
+    if given.lacks("contact", peaks):
+        with given.without("contact", sorted(peaks)):
+            for name, value in tension_of(result, question).items():
+                given.put("contact", name, value)
     for line in (line for line in question["lines"] if line["body"] == "flat"):
-        x, y, z = (np.array(line[c]) for c in "xyz")
+        plane, (x, y, z) = None, (np.array(line[c]) for c in "xyz")
+        with given.without(line["line"], STRESSES):
+            plane = plane_of(result, line)
         for name, (_, parts) in COMPONENTS.items():
-            if wanted := [q for q in line["quantities"] if q in parts]:
-
-                def make(name: str = name, parts: Any = parts, points: Any = (x, y, z, line["layer"])) -> Any:
-                    values = field(result, name, *points)
-                    return {} if values is None else {q: values[c].tolist() for q, c in parts.items()}
-
-                put(line["line"], wanted, make)
-    return found
+            wanted = [quantity for quantity in parts if quantity in line["quantities"]]
+            if name == "stress" and plane is not None:
+                for quantity in wanted:
+                    given.put(line["line"], quantity, plane[quantity].tolist())
+            elif wanted:
+                with given.without(line["line"], wanted):
+                    value = field(result, name, x, y, z, line["layer"])
+                    U = field(result, f"{name}_uncertainty", x, y, z, line["layer"], name)
+                    for quantity in wanted if value is not None else ():
+                        c = parts[quantity]
+                        given.put(
+                            line["line"], quantity, value[c].tolist(), None if U is None else U[c].tolist()
+                        )
+    return given.answered(result)
 
 
 def one_line(error: BaseException) -> str:
