@@ -1,10 +1,12 @@
 """Exams for tests of guests: a shipped case with its exact reference, the question that a guest is asked."""
 
-from verification.cases.case_file import read_case, shipped_cases
+from dataclasses import replace
+
+from verification.cases.case_file import default_cases, read_case
 from verification.guests.case_exam import claims_of, exam_path, prepare, question_of
 from verification.guests.doors.program_door import TimedAnswer
-from verification.guests.exam_subjects import subject_of
-from verification.guests.guest_description import Guest, Supports
+from verification.guests.exam_subjects import SPHERE, subject_of
+from verification.guests.guest_description import Guest, Supports, read_guest
 from verification.guests.guest_protocol import VERSION, GuestAnswer
 from verification.guests.guest_verdicts import judged
 from verification.running.case_result import from_json
@@ -15,9 +17,16 @@ GUEST = Guest.model_construct(
 )
 
 
-def prepared(name, folder):
-    """The case with its exact reference, stored below ``folder``."""
-    case = subject_of(read_case(shipped_cases()[name]))
+def guest_in(folder, text):
+    """The guest of a file with that ``text``, written into ``folder``."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "guest.toml").write_text(text)
+    return read_guest(folder)
+
+
+def prepared(name, folder, load=SPHERE, **changed):
+    """The case under ``load`` with its exact reference, stored below ``folder``; ``changed`` are fields."""
+    case = subject_of(replace(read_case(default_cases()[name]), **changed), load)
     path = exam_path(folder, case)
     prepare(case, path)
     return case, from_json(read_checked(path))
@@ -25,6 +34,14 @@ def prepared(name, folder):
 
 def question(case, exam, guest=GUEST):
     return question_of(case, exam, guest, claims_of(case, guest), {})
+
+
+def verdicts_on(case, exam, answer, guest=GUEST):
+    """The verdict on each claim by quantity and line."""
+    result = judged(
+        guest, case, exam, [answer if isinstance(answer, TimedAnswer) else TimedAnswer(answer, 0.0)]
+    )
+    return {(claim.quantity, claim.line): verdict for claim, verdict in result.verdicts}
 
 
 def result_of(case, exam, values, guest=GUEST):

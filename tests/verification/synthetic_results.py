@@ -1,6 +1,8 @@
 """Case results made up from Hertz's closed forms with errors of known size, for tests of the report."""
 
 import functools
+from collections.abc import Sequence
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -18,7 +20,10 @@ from verification.problem.quantity import (
     SLOPES,
     STRESSES,
 )
-from verification.running.case_result import CaseResult, RunInfo, SourceResult, describe
+from verification.report.report_material import ReportMaterial
+from verification.report.report_page import report_json
+from verification.running.case_result import CaseResult, RunInfo, SourceResult, describe, to_json
+from verification.running.checked_files import write_checked
 from verification.running.contact_run import decide
 from verification.sources.source_registry import CLOSED, METHODS, SOURCES
 
@@ -44,6 +49,14 @@ def contact(*coatings: tuple[float, float, float], substrate=STEEL, friction: fl
     bare = CoatedContact(10e-3, 20.0, (), substrate)
     layers = tuple((E, nu, h * bare.a_h) for E, nu, h in coatings)
     return CoatedContact(10e-3, 20.0, layers, substrate, friction)
+
+
+def run_directory(folder: Path, results: Sequence[CaseResult]) -> None:
+    """What a run leaves: the report with a checked file beside it for each case."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "report.json").write_text(report_json(ReportMaterial(results, INFO)))
+    for result in results:
+        write_checked(folder / "cases" / f"{result.name}.json", to_json(result))
 
 
 def result_of(

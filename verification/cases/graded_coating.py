@@ -9,13 +9,14 @@ Each of n equal sub-layers has the modulus at its middle, s = (k + 1/2)/n of the
 so that the contact converges with the square of the sub-layers' thickness.
 """
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal, get_args
 
 import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from verification.cases.toml_file import Strict
 from verification.cases.unit_numbers import Pascals
+from verification.problem.array_types import Array
 
 LAYERS = 50  # of a body at most, sub-layers counted
 
@@ -23,9 +24,16 @@ LAYERS = 50  # of a body at most, sub-layers counted
 class GradedCourse(Strict):
     """A modulus [Pa] that goes from ``top`` to ``base`` of the coating, the top being its surface."""
 
+    tag: ClassVar = "course"
     course: Literal["linear", "exponential"]
     top: Pascals
     base: Pascals
+
+    def at(self, s: Array) -> Array:
+        """The modulus [Pa] at shares of the thickness."""
+        if self.course == "linear":
+            return self.top + (self.base - self.top) * s
+        return np.asarray(self.top * (self.base / self.top) ** s)
 
     @property
     def words(self) -> str:
@@ -36,6 +44,7 @@ class GradedCourse(Strict):
 class ModulusTable(Strict):
     """Moduli ``E`` [Pa] at shares ``depth`` of the thickness, from 0 at the surface of the coating to 1."""
 
+    tag: ClassVar = "table"
     depth: Annotated[list[Annotated[float, Field(ge=0, le=1)]], Field(min_length=2, max_length=1000)]
     E: Annotated[list[Pascals], Field(min_length=2, max_length=1000)]
 
@@ -48,35 +57,40 @@ class ModulusTable(Strict):
             raise ValueError("has depths that do not rise from 0 to 1")
         return self
 
+    def at(self, s: Array) -> Array:
+        """The modulus [Pa] at shares of the thickness."""
+        return np.interp(s, self.depth, self.E)
+
     @property
     def words(self) -> str:
         """The table in words: "130 to 300 GPa, 3 depths"."""
         return f"{self.E[0] / 1e9:.4g} to {self.E[-1] / 1e9:.4g} GPa, {len(self.E)} depths"
 
 
-Graded = GradedCourse | ModulusTable  # every kind of E that varies with the depth
+# Every kind of E that varies with the depth: its modulus ``at`` a depth, its words, a tag of its own, known
+# to ``toml_file.KINDS``, and one more line of ``Modulus``.
+Graded = GradedCourse | ModulusTable
 
 
 def _kind(given: Any) -> str:
-    if isinstance(given, ModulusTable) or (isinstance(given, dict) and "depth" in given):
-        return "table"
-    return "course" if isinstance(given, dict | GradedCourse) else "value"
+    """The kind that has most of the keys that are given; "value" where none are."""
+    if isinstance(given, Graded):
+        return given.tag
+    if not isinstance(given, dict):
+        return "value"
+    return max(get_args(Graded), key=lambda kind: len(kind.model_fields.keys() & given.keys())).tag
 
 
 Modulus = Annotated[
     Annotated[Pascals, Tag("value")]
-    | Annotated[GradedCourse, Tag("course")]
-    | Annotated[ModulusTable, Tag("table")],
+    | Annotated[GradedCourse, Tag(GradedCourse.tag)]
+    | Annotated[ModulusTable, Tag(ModulusTable.tag)],
     Discriminator(_kind),
 ]
 
 
 def moduli(E: float | Graded, layers: int) -> tuple[float, ...]:
     """The modulus [Pa] of each of ``layers`` equal sub-layers from the surface down."""
-    s = (np.arange(layers) + 0.5) / layers
-    if isinstance(E, ModulusTable):
-        return tuple(np.interp(s, E.depth, E.E).tolist())
-    if isinstance(E, GradedCourse):
-        linear = E.top + (E.base - E.top) * s
-        return tuple((linear if E.course == "linear" else E.top * (E.base / E.top) ** s).tolist())
-    return (E,) * layers
+    if not isinstance(E, Graded):
+        return (E,) * layers
+    return tuple(E.at((np.arange(layers) + 0.5) / layers).tolist())

@@ -30,7 +30,7 @@ _SYNONYMS = {
     "force": "load",
     "h": "thickness",
 }
-_TAGS = {"value", "course", "table", "list", "range"}  # kinds of a value, in errors after its key
+KINDS = {"value", "course", "table", "list", "range"}  # kinds of a value, in errors after its key
 
 
 class CaseError(ValueError):
@@ -147,7 +147,7 @@ def place(*keys: str | int) -> str:
                 words[-1] = f"{str(before).removesuffix('s')} {int(text) + 1}"
             else:
                 words.append(f"value {int(text) + 1}")
-        elif not (key in _TAGS and before in ("E", "thickness", "thickness_over_a_h", "load")):
+        elif not (key in KINDS and before in ("E", "thickness", "thickness_over_a_h", "load")):
             words.append(text)
     return ", ".join(words[1:] if len(words) > 1 and words[0] == "problem" else words) or "the file"
 

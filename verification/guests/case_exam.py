@@ -1,5 +1,6 @@
 """Examination of a guest on one case: the exact reference, then the question in the units of the guest."""
 
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -26,11 +27,10 @@ from verification.problem.coated_contact import CoatedContact
 from verification.problem.evaluation_points import layer_at
 from verification.problem.line_profile import Profile
 from verification.problem.quantity import unit_of
-from verification.running.case_result import CaseResult, SourceResult, describe, from_json, to_json
-from verification.running.checked_files import StoreError, read_checked, write_checked
-from verification.running.json_records import plain
+from verification.running.case_result import CaseResult, SourceResult
+from verification.running.checked_files import StoreError
 from verification.running.pool.pool_task import Task
-from verification.running.provenance import fingerprint
+from verification.running.stored_run import read_result, result_of, write_result
 
 ALONG_SURFACE = ("surface", "oblique surface")  # lines that cross the contact edge
 
@@ -38,8 +38,7 @@ ALONG_SURFACE = ("surface", "oblique surface")  # lines that cross the contact e
 def prepare(case: Subject, path: Path) -> None:
     """Solve ``case`` exactly, sample it on its lines, store it at ``path``."""
     source = SourceResult(reference_of(case.problem), 0.0)
-    result = CaseResult.of(case, sources=(source,), profiles=case.exact())
-    write_checked(path, to_json(result) | {"made_by": fingerprint()})
+    write_result(path, CaseResult.of(case, sources=(source,), profiles=case.exact()))
 
 
 def exam_path(folder: Path, case: Subject) -> Path:
@@ -51,30 +50,27 @@ def exam_task(case: Subject, folder: Path) -> Task[CaseResult]:
     """Solving ``case`` exactly: a result without verdicts, its profiles at the points required of guests."""
     path, cost = exam_path(folder, case), 1.0 + len(case.problem.coatings)
     failed = partial(CaseResult.failed, case)
-    return Task(case.name, partial(prepare, case, path), path, from_json, failed, cost=cost)
+    return Task(case.name, partial(prepare, case, path), path, partial(result_of, case), failed, cost=cost)
 
 
 def kept_exam(folder: Path, case: Subject) -> CaseResult | None:
     """The exact reference of an earlier run, where it is of the same case file and code."""
     try:
-        data = read_checked(exam_path(folder, case))
-        result = from_json(data)
-    except (StoreError, ValueError):
+        result = read_result(exam_path(folder, case), case)
+    except StoreError:
         return None
-    same = result.text == case.text and result.problem == plain(describe(case.problem))
-    return result if same and data.get("made_by") == fingerprint() and result.profiles else None
+    return result if result.profiles else None
 
 
 def claims_of(case: Subject, guest: Guest) -> tuple[Claim, ...]:
     """The claims of ``case`` as claims about the guest; the cap is what it claims, where this is more."""
+    between = (guest.name, reference_of(case.problem))
     return tuple(
-        Claim(
-            claim.quantity,
-            claim.line,
-            (guest.name, reference_of(case.problem)),
-            max(claim.cap, guest.claim or 0.0),
-            claim.why,
-            max(claim.edge, guest.edge) if claim.line in ALONG_SURFACE else claim.edge,
+        replace(
+            claim,
+            between=between,
+            cap=max(claim.cap, guest.claim or 0.0),
+            edge=max(claim.edge, guest.edge) if claim.line in ALONG_SURFACE else claim.edge,
         )
         for claim in case.claims
     )

@@ -73,11 +73,6 @@ class Subject(Case):
     load: str = SPHERE
 
     @property
-    def stem(self) -> str:
-        """The name of the case."""
-        return self.name.removesuffix(f"_{self.load}")
-
-    @property
     def loaded(self) -> Load:
         """The problem to solve."""
         p = self.problem

@@ -27,11 +27,11 @@ def baseline() -> Baseline:
 @cache
 def stored(name: str) -> CaseResult:
     """A case with the numbers of the baseline and the comparisons of its manifest, judged anew."""
-    manifest, published = baseline().manifests[name], baseline().published(name)
+    recorded = baseline().cases[name]
+    manifest, published = recorded.manifest, recorded.published
     case = read_published(published_cases()[name]) if published else read_case(default_cases()[name])
     profiles = [
-        Profile(n.quantity, n.line, n.position, n.value, n.source, n.uncertainty)
-        for n in baseline().cases[name]
+        Profile(n.quantity, n.line, n.position, n.value, n.source, n.uncertainty) for n in recorded.numbers
     ]
     known = {(one.source, one.quantity, one.line): one for one in profiles}
     verdicts = []

@@ -56,7 +56,7 @@ def _contact_page(result: CaseResult) -> str:
             "## Results",
             *map(shown, contact_tables(result)),
             f"{len(verdicts)} comparisons at {points(name)} points, "
-            f"{len(baseline().manifests[name].invariants)} invariants; {agreed} of {len(verdicts)} "
+            f"{len(baseline().cases[name].manifest.invariants)} invariants; {agreed} of {len(verdicts)} "
             "comparisons agree.",
             _worst_table(result),
             "## Case file",

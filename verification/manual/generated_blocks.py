@@ -65,9 +65,9 @@ over the smaller of $\delta_h$ and $\delta$.
 def totals() -> str:
     """Counts of the default run, in one sentence."""
     known = baseline()
-    contacts = [name for name in known.cases if not known.published(name)]
-    comparisons = sum(len(c.pairs) for name in contacts for c in known.manifests[name].comparisons)
-    invariants = sum(len(known.manifests[name].invariants) for name in contacts)
+    contacts = {name: case.manifest for name, case in known.cases.items() if not case.published}
+    comparisons = sum(len(c.pairs) for manifest in contacts.values() for c in manifest.comparisons)
+    invariants = sum(len(manifest.invariants) for manifest in contacts.values())
     return (
         f"The default run solves {len(contacts)} cases. It judges {comparisons} comparisons at "
         f"{sum(map(points, contacts))} points and {invariants} invariants; the baseline holds "
@@ -128,9 +128,9 @@ def sources() -> str:
 def invariants() -> str:
     """Every invariant of the default run: how often judged, at how many points, largest bound."""
     found: dict[str, list[tuple[int, float]]] = {}
-    for name, manifest in baseline().manifests.items():
-        if not baseline().published(name):
-            for law, _, _, points, widest in manifest.invariants:
+    for case in baseline().cases.values():
+        if not case.published:
+            for law, _, _, points, widest in case.manifest.invariants:
                 plain = re.sub(r"^ball, |, (coating|interface) \d+|, substrate", "", law)
                 found.setdefault(plain, []).append((points, widest))
     rows = [

@@ -74,26 +74,39 @@ class Update:
 
 
 @dataclass(frozen=True, eq=False)
+class RecordedCase:
+    """The numbers of a case, the digest of its file, and the manifest of what was judged of it."""
+
+    digest: str
+    manifest: Manifest
+    numbers: tuple[Numbers, ...]
+
+    @classmethod
+    def of(cls, result: CaseResult) -> "RecordedCase":
+        """Record of a result."""
+        return cls(digest(result.text), manifest_of(result), measured(result))
+
+    @property
+    def published(self) -> bool:
+        """Whether it has published tables."""
+        return bool(self.manifest.cells)
+
+
+@dataclass(frozen=True, eq=False)
 class Baseline:
-    """The numbers of every case, the digest of its file, its manifest, every update from first to last.
+    """Every case by its name, every update from first to last.
 
     self_tests : number of known answers of each self-test of the harness.
     """
 
-    cases: Mapping[str, tuple[Numbers, ...]]
-    digests: Mapping[str, str]
+    cases: Mapping[str, RecordedCase]
     history: tuple[Update, ...]
-    manifests: Mapping[str, Manifest] = field(default_factory=dict)
     self_tests: Mapping[str, int] = field(default_factory=dict)
 
     @property
     def last(self) -> Update:
         """The update that wrote the present numbers."""
         return self.history[-1]
-
-    def published(self, name: str) -> bool:
-        """Whether the case ``name`` has published tables."""
-        return name in self.manifests and bool(self.manifests[name].cells)
 
 
 @dataclass(frozen=True)
@@ -141,22 +154,23 @@ def against(
     """The changes of every case; cases that a ``whole`` run or one of all ``published`` lacks are gone."""
     found = [case_drift(result, baseline) for result in results]
     names = {result.name for result in results}
-    for name, numbers in baseline.cases.items():
-        if (published if baseline.published(name) else whole) and name not in names:
-            gone = tuple(_unpaired(then, State.GONE) for then in numbers)
+    for name, case in baseline.cases.items():
+        if (published if case.published else whole) and name not in names:
+            gone = tuple(_unpaired(then, State.GONE) for then in case.numbers)
             found.append(CaseDrift(name, name, gone, "this case was not run"))
     return tuple(found)
 
 
 def case_drift(result: CaseResult, baseline: Baseline) -> CaseDrift:
     """The changes of one case since ``baseline``."""
+    recorded = baseline.cases.get(result.name)
     now = {numbers.key: numbers for numbers in measured(result)}
-    then = {numbers.key: numbers for numbers in baseline.cases.get(result.name, ())}
+    then = {numbers.key: numbers for numbers in (recorded.numbers if recorded else ())}
     drifts = [drift(old, now[key]) if key in now else _unpaired(old, State.GONE) for key, old in then.items()]
     drifts += [_unpaired(numbers, State.NEW) for key, numbers in now.items() if key not in then]
-    message = "" if baseline.digests.get(result.name) == digest(result.text) else "its case file was changed"
-    if result.name not in baseline.cases:
-        message = "not in the baseline"
+    message = "not in the baseline"
+    if recorded is not None:
+        message = "" if recorded.digest == digest(result.text) else "its case file was changed"
     return CaseDrift(result.name, result.title, tuple(drifts), message)
 
 
@@ -182,8 +196,8 @@ def regression(
     judged = [
         row
         for result in results
-        if result.name in baseline.manifests
-        for row in differences(result, baseline.manifests[result.name])
+        if result.name in baseline.cases
+        for row in differences(result, baseline.cases[result.name].manifest)
     ]
     run = {result.name for result in results}
     judged += [
@@ -247,24 +261,20 @@ def updated(
 
     Published cases that are not among them are kept.   self_tests : as in ``regression``.
     """
-    cases = {result.name: measured(result) for result in results}
-    manifests = {result.name: manifest_of(result) for result in results}
+    cases = {result.name: RecordedCase.of(result) for result in results}
     tests = dict(self_tests or {})
     changes: dict[str, tuple[int, float | None]] = {}
     for case in against(results, old, whole=True) if old is not None else ():
         count = sum(case.count(state) for state in (State.DRIFTED, State.GONE, State.NEW))
         if count:
             changes[case.name] = (count, case.change)
-    digests = {result.name: digest(result.text) for result in results}
     less: tuple[ManifestDifference, ...] = ()
     if old is not None:
         less = regression(results, old, "", info, whole=True, self_tests=tests).less
-        for name in (name for name in old.cases if old.published(name) and name not in cases):
-            cases[name], digests[name] = old.cases[name], old.digests[name]
-            manifests[name] = old.manifests[name]
-    numbers = sum(n.count for found in cases.values() for n in found)
+        cases |= {name: case for name, case in old.cases.items() if case.published and name not in cases}
+    numbers = sum(n.count for case in cases.values() for n in case.numbers)
     update = Update(why, when, info.commit, info.machine, dict(info.versions), numbers, changes, less)
-    return Baseline(cases, digests, (*(old.history if old is not None else ()), update), manifests, tests)
+    return Baseline(cases, (*(old.history if old is not None else ()), update), tests)
 
 
 def _unpaired(numbers: Numbers, state: State) -> Drift:

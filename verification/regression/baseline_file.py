@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from verification.problem.array_types import Array
-from verification.regression.baseline_change import Baseline, Update
+from verification.regression.baseline_change import Baseline, RecordedCase, Update
 from verification.regression.manifest import Manifest
 from verification.regression.number_drift import RELATIVE, TOLERANCE, Numbers
 from verification.running.checked_files import StoreError
@@ -62,13 +62,8 @@ def write_baseline(folder: Path, baseline: Baseline) -> Path:
     Raises ValueError where two profiles have one key, or a line has two sets of points.
     """
     cases = {
-        name: _Case(
-            baseline.digests[name],
-            baseline.manifests[name],
-            points_by_line(name, found),
-            tuple(map(_profile, found)),
-        )
-        for name, found in baseline.cases.items()
+        name: _Case(c.digest, c.manifest, points_by_line(name, c.numbers), tuple(map(_profile, c.numbers)))
+        for name, c in baseline.cases.items()
     }
     return _FILE.write(folder, _BaselineFile(cases, baseline.history, dict(baseline.self_tests)))
 
@@ -79,12 +74,13 @@ def read_baseline(folder: Path) -> Baseline | None:
     if file is None:
         return None
     try:
-        numbers = {name: tuple(_numbers(p, c) for p in c.profiles) for name, c in file.cases.items()}
+        cases = {
+            name: RecordedCase(c.digest, c.manifest, tuple(_numbers(p, c) for p in c.profiles))
+            for name, c in file.cases.items()
+        }
     except KeyError as error:
         raise StoreError(f"{path_in(folder)}: no points of line {error}; restore it or update it") from None
-    digests = {name: case.digest for name, case in file.cases.items()}
-    manifests = {name: case.manifest for name, case in file.cases.items()}
-    return Baseline(numbers, digests, file.history, manifests, file.self_tests)
+    return Baseline(cases, file.history, file.self_tests)
 
 
 def points_by_line(case: str, found: tuple[Numbers, ...]) -> dict[str, Array]:

@@ -147,5 +147,5 @@ def _differences(then: _Entries, now: _Entries, lost: set[tuple[str, ...]]) -> I
             if not abs(growth) <= room:
                 what = key[0] if len(key) > 2 else ", ".join(key)
                 yield f"{what}: {name} {new:.6g} in place of {old:.6g}", not growth < 0
-    for key in now.keys() - then.keys():
+    for key in (key for key in now if key not in then):
         yield f"{', '.join(key[:2])}: not recorded", False

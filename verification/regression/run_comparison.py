@@ -5,8 +5,8 @@ from itertools import chain
 
 from verification.judging.verdict import Outcome
 from verification.page.number_text import scientific
-from verification.regression.baseline_change import Baseline, CaseDrift, Update, against, differing, digest
-from verification.regression.number_drift import State, measured
+from verification.regression.baseline_change import Baseline, CaseDrift, RecordedCase, against, differing
+from verification.regression.number_drift import State
 from verification.running.case_result import CaseResult
 from verification.running.stored_run import StoredRun
 
@@ -58,9 +58,7 @@ class RunComparison:
 
 def compare_runs(a: StoredRun, b: StoredRun) -> RunComparison:
     """Differences of run ``b`` from run ``a``, at every point of every profile."""
-    update = Update("", a.info.started, a.info.commit, a.info.machine, a.info.versions, 0, {})
-    numbers = {result.name: measured(result) for result in a.results}
-    first = Baseline(numbers, {result.name: digest(result.text) for result in a.results}, (update,))
+    first = Baseline({result.name: RecordedCase.of(result) for result in a.results}, ())
     names = dict.fromkeys(result.name for result in (*a.results, *b.results))
     found = {name: (a.result(name), b.result(name)) for name in names}
     changes = (_verdicts(name, one, two) for name, (one, two) in found.items() if one and two)

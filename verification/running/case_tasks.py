@@ -8,18 +8,14 @@ import os
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
-from typing import Any
 
 from verification.cases.case_file import Case
 from verification.cases.published_file import PublishedCase
 from verification.judging.verdict import Outcome
 from verification.running import published_run
-from verification.running.case_result import CaseResult, describe, from_json, to_json
-from verification.running.checked_files import StoreError, read_checked, write_checked
+from verification.running.case_result import CaseResult
 from verification.running.contact_run import judge_case, solve_case
-from verification.running.json_records import plain
 from verification.running.pool.pool_task import Task
-from verification.running.provenance import fingerprint
 from verification.running.slicing import slicing_remarks
 from verification.running.stored_fields import (
     confirm_fields,
@@ -28,6 +24,7 @@ from verification.running.stored_fields import (
     write_fields,
     write_plane,
 )
+from verification.running.stored_run import read_result, result_of, write_result
 from verification.sampling.stress_plane import plane_invariants, sample_plane
 from verification.sources.method_sources import sharing_pressure
 from verification.sources.source_record import Solver
@@ -46,7 +43,7 @@ def case_task(case: Case | PublishedCase, folder: Path, *, fields: bool = False)
 
     Contacts that differ in friction alone share a process, and so the solution without friction.
     """
-    path, read = result_path(folder, case), partial(_of, case)
+    path, read = result_path(folder, case), partial(result_of, case)
     if not isinstance(case, Case):
         work, lost = (partial(solve_and_store_published, case, path), partial(published_run.failed, case))
         return Task(case.name, work, path, read, lost, cost=1.0, ahead=_METHOD_PACKAGES)
@@ -84,26 +81,17 @@ def solve_and_store(case: Case, path: Path, plane: Path, directory: Path | None 
     write_plane(plane, drawn, case.text)
     if directory is not None:
         write_fields(case, solved.solutions, directory)
-    write_checked(path, to_json(result) | {"made_by": fingerprint()})
+    write_result(path, result)
 
 
 def solve_and_store_published(case: PublishedCase, path: Path) -> None:
     """Solve a published ``case`` and store its result at ``path``."""
-    result = published_run.run(case)
-    write_checked(path, to_json(result) | {"made_by": fingerprint()})
+    write_result(path, published_run.run(case))
 
 
 @cache
 def _solvers() -> dict[str, Solver]:
     return {name: sharing_pressure(solve) for name, solve in solvers().items()}
-
-
-def _of(case: Case | PublishedCase, data: dict[str, Any]) -> CaseResult:
-    """The stored result of ``case``. Raises ValueError where it is that of another file or problem."""
-    result = from_json(data)
-    if (result.name, result.text, result.problem) != (case.name, case.text, plain(describe(case.problem))):
-        raise ValueError(f"holds the result of another case file than {case.name} is now")
-    return result
 
 
 def kept_result(folder: Path, case: Case | PublishedCase, *, fields: bool = False) -> CaseResult | None:
@@ -116,13 +104,7 @@ def kept_result(folder: Path, case: Case | PublishedCase, *, fields: bool = Fals
     path = result_path(folder, case)
     if not os.path.lexists(path):
         return None
-    data = read_checked(path)
-    if data.get("made_by") != fingerprint():
-        raise StoreError(f"{path}: made by another version of this program")
-    try:
-        result = _of(case, data)
-    except ValueError as error:
-        raise StoreError(f"{path}: {error}") from None
+    result = read_result(path, case)
     if isinstance(case, Case):
         read_plane(plane_path(folder, case.name), case.text)
         if fields:

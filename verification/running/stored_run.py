@@ -1,14 +1,43 @@
-"""A run read back from the report.json that it left."""
+"""Stored results: that of one case, which need not be computed again, and a run by its report.json."""
 
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from verification.running.case_result import CaseResult, RunInfo, from_json, to_json
-from verification.running.checked_files import StoreError, read_bounded, read_checked
-from verification.running.json_records import decode
+from verification.running.case_result import CaseResult, RunInfo, describe, from_json, to_json
+from verification.running.checked_files import StoreError, read_bounded, read_checked, write_checked
+from verification.running.json_records import decode, plain
+from verification.running.provenance import fingerprint
 
 MAX_BYTES = 1_000_000_000  # of all the results of a run: half a megabyte a case, up to 3 with an elastic ball
+
+
+def write_result(path: Path, result: CaseResult) -> None:
+    """Store ``result`` with the fingerprint of the code that made it."""
+    write_checked(path, to_json(result) | {"made_by": fingerprint()})
+
+
+def result_of(case: Any, data: dict[str, Any]) -> CaseResult:
+    """The stored result of ``case``. Raises ValueError where it is that of another file or problem."""
+    result = from_json(data)
+    if (result.name, result.text, result.problem) != (case.name, case.text, plain(describe(case.problem))):
+        raise ValueError(f"holds the result of another case file than {case.name} is now")
+    return result
+
+
+def read_result(path: Path, case: Any) -> CaseResult:
+    """The result of ``case`` at ``path``, made by this code.
+
+    Raises StoreError, naming the file, where there is none that can be used.
+    """
+    data = read_checked(path)
+    if data.get("made_by") != fingerprint():
+        raise StoreError(f"{path}: made by another version of this program")
+    try:
+        return result_of(case, data)
+    except ValueError as error:
+        raise StoreError(f"{path}: {error}") from None
 
 
 @dataclass(frozen=True, eq=False)

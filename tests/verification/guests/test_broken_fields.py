@@ -5,13 +5,11 @@ from functools import partial
 
 import numpy as np
 import pytest
-from guest_exams import GUEST, prepared, question
+from guest_exams import prepared, question, verdicts_on
 
 from verification.guests.doors import own_python
-from verification.guests.doors.program_door import TimedAnswer
 from verification.guests.doors.serve_function import values_of
 from verification.guests.guest_protocol import VERSION, GuestAnswer
-from verification.guests.guest_verdicts import judged
 from verification.judging.verdict import Outcome
 from verification.problem.quantity import DISPLACEMENTS, PEAKS, STRESSES
 from verification.running.json_records import plain
@@ -93,18 +91,17 @@ def exact(tmp_path_factory):
 
 def own_environment(result, problem, asked):
     """The answer of a function in an environment of its own."""
-    return own_python.answered(lambda **given: result, asked.model_dump())
+    return own_python.values_of(result, asked.model_dump())
 
 
 def same_environment(result, problem, asked):
-    return plain(vars(values_of(result, problem, asked)))
+    return plain(values_of(result, problem, asked))
 
 
 def verdicts(case, exam, result, door):
     asked = question(case, exam)
     answer = GuestAnswer(protocol=VERSION, id=asked.id, **door(result, case.problem, asked))
-    found = judged(GUEST, case, exam, [TimedAnswer(answer, 0.0)]).verdicts
-    return {(claim.quantity, claim.line): verdict for claim, verdict in found}
+    return verdicts_on(case, exam, answer)
 
 
 @pytest.mark.parametrize("door", [same_environment, own_environment])
@@ -131,6 +128,16 @@ def test_keys_that_are_not_there_or_not_known_cost_no_other(exact, door):
     found = verdicts(case, exam, {k: v for k, v in right.items() if k != "approach"}, door)
     assert [q for q, line in found if found[q, line] != whole[q, line]] == ["approach"]
     assert found["approach", "contact"].outcome is NONE
+
+
+@pytest.mark.parametrize("door", [same_environment, own_environment])
+def test_uncertainties_that_are_stated_are_those_of_the_answer(exact, door):
+    case, exam, right = exact
+    stated = {"uncertainty": {"approach": 1e-9}}
+    stated["displacement_uncertainty"] = lambda x, y, z: np.full((3, x.size), 1e-12)
+    found = door(right | stated, case.problem, question(case, exam))["uncertainty"]
+    assert found.pop("contact") == {"approach": 1e-9}
+    assert {q for by in found.values() for q in by} == set(DISPLACEMENTS)
 
 
 def test_a_failure_inside_a_package_names_the_line_of_the_adapter(tmp_path, monkeypatch):

@@ -8,24 +8,22 @@ from itertools import product
 from pathlib import Path
 
 import pytest
+from guest_exams import guest_in, prepared, question
 from pydantic.json_schema import models_json_schema
 from quick_case import coatcheck
 
 import verification
-from verification.cases.case_file import read_case, shaped_cases, shipped_cases
-from verification.guests.case_exam import claims_of, prepare, question_of
+from verification.cases.case_file import read_case, shipped_cases
 from verification.guests.diagnosis.slip_diagnosis import causes_of
 from verification.guests.doors.ask_guest import answered
 from verification.guests.doors.file_door import pack, read_answer
-from verification.guests.exam_subjects import PLANE, REFERENCE, subject_of
-from verification.guests.guest_description import read_guest
+from verification.guests.exam_subjects import PLANE, REFERENCE
 from verification.guests.guest_protocol import VERSION, GuestAnswer, ProtocolError, Question
 from verification.guests.guest_verdicts import judged
 from verification.judging.verdict import Outcome
 from verification.problem.line_profile import all_lines
 from verification.problem.quantity import STRESSES
-from verification.running.case_result import SourceResult, from_json
-from verification.running.checked_files import read_checked
+from verification.running.case_result import SourceResult
 from verification.running.contact_run import decide
 from verification.sampling.line_sampling import sample, sample_contact
 from verification.sources.source_registry import SOURCES
@@ -34,12 +32,6 @@ PACKAGE = Path(verification.__file__).parent
 EXAMPLES = PACKAGE / "guests" / "examples"
 SUPPORTS = "supports = { coatings = 50, friction = true, stress = true }\n"
 SERVED = ["-m", "verification.guests.doors.serve_function"]
-
-
-def guest_in(folder, text):
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "guest.toml").write_text(text)
-    return read_guest(folder)
 
 
 def filled(path, key, answers):
@@ -70,19 +62,16 @@ def fill(folder, question, answer):
     filled(folder / "points.csv", "number", points)
 
 
-def through_all_doors(method, case, folder):
-    """The exact reference; results of a method as function, as program and as files, at one case."""
-    path = folder / "exam.json"
-    prepare(case, path)
-    exam = from_json(read_checked(path))
+def through_all_doors(method, case, exam, folder):
+    """Results of a method as function, as program and as files, at one case."""
     name = f'name = "own"\ntime_limit = 900\n{SUPPORTS}'  # of a machine at work
     command = json.dumps([sys.executable, *SERVED, f"{method}:solve"])
     by_function = guest_in(folder / "function", f'{name}callable = "{method}:solve"')
     by_program = guest_in(folder / "program", f"{name}command = {command}")
     by_files = guest_in(folder / "files", f'{name}results = "answers"')
-    results = [exam]
+    results = []
     for guest in (by_function, by_program):
-        questions = [question_of(case, exam, guest, claims_of(case, guest), {})]
+        questions = [question(case, exam, guest)]
         replies = answered(guest, case, questions)
         results.append(judged(guest, case, exam, replies))
     fill(pack(by_files, case, questions[0]), questions[0], replies[-1].answer)
@@ -111,10 +100,9 @@ def outcomes(result):
 
 def check_own(method, name, folder):
     """The verdicts through all doors are equal, and those of the run inside; on the plane they are more."""
-    case = subject_of(read_case(shipped_cases()[name]))
-    exam, function, program, files = through_all_doors(method, case, folder)
-    assert [v for _, v in function.verdicts] == [v for _, v in program.verdicts]
-    assert [v for _, v in function.verdicts] == [v for _, v in files.verdicts]
+    case, exam = prepared(name, folder)
+    function, program, files = through_all_doors(method, case, exam, folder)
+    assert function.verdicts == program.verdicts == files.verdicts
     inside = inside_verdicts(name, method, exam)
     expected = inside | {(q, PLANE): Outcome.AGREES for q in STRESSES}
     differing = {key for key, outcome in outcomes(function).items() if outcome is not expected[key]}
@@ -137,15 +125,13 @@ def solve(radius, load, substrate, indenter, coatings=()):
 
 
 def test_an_ellipsoid_is_asked_of_a_guest_that_supports_it_and_judged_by_the_closed_form(tmp_path):
-    case = subject_of(read_case(shaped_cases()["24_ellipse"]))
-    prepare(case, tmp_path / "exam.json")
-    exam = from_json(read_checked(tmp_path / "exam.json"))
+    case, exam = prepared("24_ellipse", tmp_path)
     text = 'name = "own"\nclaim = 1e-6\n{}callable = "{}:solve"\n'
     assert "ellipsoid" in guest_in(tmp_path, text.format("", "adapter")).refusal(case.problem)
     for name, nu, outcome in (("right", "nu", Outcome.AGREES), ("wrong", "0.0", Outcome.DISAGREES)):
         (tmp_path / f"{name}.py").write_text(ELLIPTICAL.format(nu=nu))
         guest = guest_in(tmp_path, text.format("supports = { ellipsoid = true }\n", name))
-        asked = question_of(case, exam, guest, claims_of(case, guest), {})
+        asked = question(case, exam, guest)
         result = judged(guest, case, exam, answered(guest, case, [asked]))
         assert {one.source for one in result.sources} == {"own", "hertz"}
         assert set(outcomes(result)) == {(q, "contact") for q in asked.contact}
@@ -178,17 +164,26 @@ def test_init_writes_a_guest_that_runs_as_it_is(tmp_path):
     assert coatcheck("guest", "init", "mine", cwd=tmp_path).returncode == 2
 
 
-def test_a_function_in_an_environment_of_its_own_gets_the_same_verdicts(tmp_path):
-    shutil.copytree(EXAMPLES / "start", tmp_path / "g")
-    text = (tmp_path / "g" / "guest.toml").read_text()
-    (tmp_path / "g" / "guest.toml").write_text(
-        text.replace("\n", f"\npython = {json.dumps(sys.executable)}\n", 1)
-    )
-    (tmp_path / "g" / "adapter.py").write_text(
-        (tmp_path / "g" / "adapter.py").read_text()
-        + "\n\nimport sys\nassert 'pydantic' not in sys.modules and 'scipy' not in sys.modules\n"
-    )
-    done = coatcheck("guest", "check", "g", cwd=tmp_path)
+@pytest.mark.parametrize(
+    ("first", "last", "code"),
+    [
+        # in an environment of its own, with numpy alone
+        (
+            f"python = {json.dumps(sys.executable)}\n",
+            "",
+            "import sys\nassert 'pydantic' not in sys.modules and 'scipy' not in sys.modules\n",
+        ),
+        # N, mm, MPa are consistent
+        ("", '\n[units]\nlength = "mm"\nstress = "MPa"\n', ""),
+    ],
+    ids=["own environment", "own units"],
+)
+def test_the_example_gets_its_verdicts_in_its_own_environment_and_in_its_own_units(
+    tmp_path, first, last, code
+):
+    for name, before, after in (("guest.toml", first, last), ("adapter.py", "", code)):
+        (tmp_path / name).write_text(before + (EXAMPLES / "start" / name).read_text() + after)
+    done = coatcheck("guest", "check", ".", cwd=tmp_path)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "4 of 4" in done.stdout
 
@@ -280,36 +275,31 @@ def test_exit_codes_of_a_guest(tmp_path):
     assert code(right, text.replace("claim = ", "# claim = ")) == 4
 
 
-def test_units_of_a_guest_are_converted_both_ways(tmp_path):
-    shutil.copytree(EXAMPLES / "start", tmp_path / "g")
-    units = '\n[units]\nlength = "mm"\nstress = "MPa"\n'
-    (tmp_path / "g" / "guest.toml").write_text((EXAMPLES / "start" / "guest.toml").read_text() + units)
-    done = coatcheck("guest", "check", "g", cwd=tmp_path)
-    assert done.returncode == 0, done.stdout  # N, mm, MPa are consistent
-
-
 def test_files_that_are_filled_in_wrongly_are_named(tmp_path):
-    case = subject_of(read_case(shipped_cases()["01_uncoated_steel"]))
-    prepare(case, tmp_path / "exam.json")
-    exam = from_json(read_checked(tmp_path / "exam.json"))
+    case, exam = prepared("01_uncoated_steel", tmp_path)
     guest = guest_in(tmp_path / "files", f'name = "f"\nresults = "answers"\nclaim = 0.01\n{SUPPORTS}')
-    question = question_of(case, exam, guest, claims_of(case, guest), {})
-    folder = pack(guest, case, question)
-    assert read_answer(guest, case, question).unsupported is not None
-    contact, points = folder / "contact.csv", folder / "points.csv"
-    empty = contact.read_text(), points.read_text()
-    contact.write_text(empty[0].replace("contact_radius,m,", "contact_radius,m,8.66e-5"))
-    assert read_answer(guest, case, question).values == {"contact": {"contact_radius": 8.66e-5}}
-    contact.write_text(empty[0].replace("contact_radius,m,", "contact_radius,m,wide"))
-    assert "contact.csv" in read_answer(guest, case, question).failed["contact"]["contact_radius"]
-    contact.write_text(empty[0])
-    points.write_text("\n".join(empty[1].splitlines()[:-1]))
+    asked = question(case, exam, guest)
+    folder = pack(guest, case, asked)
+
+    def answer(name, old, new):
+        """What is read where the packed file ``name`` has ``new`` for ``old``."""
+        path = folder / name
+        packed = path.read_text()
+        path.write_text(packed.replace(old, new, 1))
+        try:
+            return read_answer(guest, case, asked)
+        finally:
+            path.write_text(packed)
+
+    assert answer("contact.csv", "", "").unsupported is not None
+    given = answer("contact.csv", "contact_radius,m,", "contact_radius,m,8.66e-5")
+    assert given.values == {"contact": {"contact_radius": 8.66e-5}}
+    wrong = answer("contact.csv", "contact_radius,m,", "contact_radius,m,wide")
+    assert "contact.csv" in wrong.failed["contact"]["contact_radius"]
+    last = (folder / "points.csv").read_text().splitlines()[-1]
     with pytest.raises(ProtocolError, match="once"):
-        read_answer(guest, case, question)
-    lines = empty[1].splitlines()
-    lines[1] = lines[1].replace("0,,,,-", "0,1e9,,,-")
-    points.write_text("\n".join(lines))
-    assert "pressure" in read_answer(guest, case, question).failed["surface"]["pressure"]
+        answer("points.csv", last, "")
+    assert "pressure" in answer("points.csv", "0,,,,-", "0,1e9,,,-").failed["surface"]["pressure"]
 
 
 def test_the_schema_of_the_package_is_that_of_the_code():

@@ -8,7 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
-from guest_exams import prepared, question
+from guest_exams import prepared, question, verdicts_on
 
 from verification.guests.case_exam import claims_of, exam_path, prepare, question_of
 from verification.guests.doors.ask_guest import answered, ask_task
@@ -16,11 +16,11 @@ from verification.guests.doors.file_door import pack
 from verification.guests.doors.program_door import Program
 from verification.guests.guest_description import Guest, Supports
 from verification.guests.guest_protocol import ProtocolError
-from verification.guests.guest_verdicts import judged
 from verification.judging.verdict import Outcome
 from verification.running.pool.process_pool import run_tasks
 
 LIMIT = 0.4  # s for an answer of a guest that hangs
+COMMAND = (sys.executable, "-S", "-E", "hostile.py")
 # Every program begins so: the question is read, `good` is what Hertz would answer.
 HEAD = """
 import json, math, os, signal, sys, time
@@ -102,9 +102,6 @@ PROGRAMS = {
         "",
     ),
 }
-SLOW = {
-    "a_gigabyte_of_output": ("while True: say('x' * 10**6 + '\\n')", NO, "more than 64 MB without an answer")
-}
 
 
 @pytest.fixture(scope="module")
@@ -120,14 +117,24 @@ def guest(folder, **way_in):
     )
 
 
-def verdict_on(hertz, program, folder, limit=LIMIT):
-    """The verdict on the contact radius of a program in Python."""
+def hostile(folder, program, limit=LIMIT):
+    """A guest whose program is this text in Python."""
+    (folder / "hostile.py").write_text(program + "\n")
+    return guest(folder, command=COMMAND, time_limit=limit)
+
+
+def verdict_on(hertz, host):
+    """The verdict on the contact radius of a guest."""
     case, exam, _ = hertz
-    (folder / "hostile.py").write_text(HEAD + program + "\n")
-    host = guest(folder, command=(sys.executable, "-S", "-E", "hostile.py"), time_limit=limit)
-    asked = question(case, exam, host)
-    result = judged(host, case, exam, answered(host, case, [asked]))
-    return next(v for c, v in result.verdicts if c.quantity == "contact_radius")
+    (reply,) = answered(host, case, [question(case, exam, host)])
+    return verdicts_on(case, exam, reply, host)["contact_radius", "contact"]
+
+
+def check_message(verdict, outcomes, words):
+    assert verdict.outcome in outcomes, verdict.reason
+    assert words in verdict.reason
+    assert "\n" not in verdict.reason
+    assert len(verdict.reason) < 2500
 
 
 @pytest.fixture(scope="module")
@@ -138,7 +145,7 @@ def verdicts(hertz, tmp_path_factory):
         program, *_ = PROGRAMS[name]
         # Who must end by itself has time: start and reading take theirs on a machine at work.
         limit = LIMIT if name == "hangs" else 20.0
-        return verdict_on(hertz, program, tmp_path_factory.mktemp(name), limit)
+        return verdict_on(hertz, hostile(tmp_path_factory.mktemp(name), HEAD + program, limit))
 
     with ThreadPoolExecutor(8) as pool:
         return dict(zip(PROGRAMS, pool.map(verdict_of, PROGRAMS), strict=True))
@@ -147,20 +154,13 @@ def verdicts(hertz, tmp_path_factory):
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_hostile_program_is_one_message(verdicts, name):
     _, outcome, words = PROGRAMS[name]
-    verdict = verdicts[name]
-    assert verdict.outcome is outcome, verdict.reason
-    assert words in verdict.reason
-    assert "\n" not in verdict.reason
-    assert len(verdict.reason) < 2500
+    check_message(verdicts[name], (outcome,), words)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SLOW)
-def test_a_hostile_program_with_much_to_say_is_one_message(hertz, tmp_path, name):
-    program, outcome, words = SLOW[name]
-    verdict = verdict_on(hertz, program, tmp_path, 60.0)
-    assert verdict.outcome is outcome, verdict.reason
-    assert words in verdict.reason
+def test_a_program_with_a_gigabyte_to_say_is_one_message(hertz, tmp_path):
+    host = hostile(tmp_path, HEAD + "while True: say('x' * 10**6 + '\\n')", 60.0)
+    check_message(verdict_on(hertz, host), (NO,), "more than 64 MB without an answer")
 
 
 # What a function does: body, words of the message. All end without a result.
@@ -177,41 +177,31 @@ FUNCTIONS = {
 @pytest.mark.slow
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_a_hostile_function_is_one_message(hertz, tmp_path, name):
-    case, exam, _ = hertz
     body, words = FUNCTIONS[name]
     (tmp_path / "adapter.py").write_text(f"def solve(radius, load, substrate):\n    {body}\n")
     host = guest(tmp_path, callable="adapter:solve", time_limit=10.0)
-    asked = question(case, exam, host)
-    result = judged(host, case, exam, answered(host, case, [asked]))
-    verdict = next(v for c, v in result.verdicts if c.quantity == "contact_radius")
-    assert verdict.outcome in (Outcome.NO_RESULT, Outcome.UNSUPPORTED)
-    assert words in verdict.reason
+    check_message(verdict_on(hertz, host), (NO, NONE), words)
 
 
 def test_answers_out_of_order_are_refused(hertz, tmp_path):
     case, exam, _ = hertz
-    program = HEAD + "second = sys.stdin.readline()\n"  # waits for a second question before it answers
-    (tmp_path / "hostile.py").write_text(program)
-    host = guest(tmp_path, command=(sys.executable, "-S", "-E", "hostile.py"), time_limit=LIMIT)
+    host = hostile(
+        tmp_path, HEAD + "second = sys.stdin.readline()"
+    )  # waits for a second one before it answers
     host = host.model_copy(update={"refine": {"n": [1, 2, 4]}})
     claims = claims_of(case, host)
     questions = [question_of(case, exam, host, claims, parameter) for parameter in host.questions]
     replies = answered(host, case, questions)
     assert len(replies) == 3
     assert all(reply.answer.error for reply in replies)
-    (tmp_path / "hostile.py").write_text(HEAD + "good['id'] = q['id'].replace('=1', '=2'); answer()\n")
+    hostile(tmp_path, HEAD + "good['id'] = q['id'].replace('=1', '=2'); answer()")
     replies = answered(host, case, questions)
     assert "question" in replies[0].answer.error
 
 
 def test_a_program_that_keeps_its_answer_in_a_buffer_is_told_to_flush(hertz, tmp_path):
     program = "import sys, time; print('COATCHECK {}', flush=False); sys.stdin.readline(); time.sleep(100)"
-    (tmp_path / "hostile.py").write_text(program)
-    case, exam, _ = hertz
-    host = guest(tmp_path, command=(sys.executable, "-S", "-E", "hostile.py"), time_limit=1.0)
-    asked = question(case, exam, host)
-    (reply,) = answered(host, case, [asked])
-    assert "flush" in reply.answer.error
+    assert "flush" in verdict_on(hertz, hostile(tmp_path, program, 1.0)).reason
 
 
 def test_a_program_that_is_not_there_is_one_message(tmp_path):
@@ -241,10 +231,8 @@ def test_hostile_files_are_one_message(hertz, tmp_path):
 
 def test_a_hostile_guest_does_not_hold_up_the_others(hertz, tmp_path):
     case, exam, folder = hertz
-    (tmp_path / "hostile.py").write_text(HEAD + "time.sleep(1000)\n")
-    command = json.dumps([sys.executable, "-S", "-E", "hostile.py"])
-    text = f'name = "g"\ncommand = {command}\nclaim = 0.01\ntime_limit = {LIMIT}\n'
-    host = guest(tmp_path).model_copy(update={"text": text})
+    text = f'name = "g"\ncommand = {json.dumps(COMMAND)}\nclaim = 0.01\ntime_limit = {LIMIT}\n'
+    host = hostile(tmp_path, HEAD + "time.sleep(1000)").model_copy(update={"text": text})
     begin = time.monotonic()
     second = replace(case, name="second")
     prepare(second, exam_path(folder, second))

@@ -4,21 +4,16 @@ import csv
 
 import numpy as np
 import pytest
-from guest_exams import exam_path, question
+from guest_exams import guest_in, prepared, question
 from quick_case import coatcheck
 
 import fem_reference
 from fem_reference.vtu import write_vtu
-from verification.cases.case_file import read_case, shipped_cases
-from verification.guests.case_exam import prepare
 from verification.guests.doors.file_door import place_of, read_answer
-from verification.guests.exam_subjects import DISC, subject_of
-from verification.guests.guest_description import read_guest
+from verification.guests.exam_subjects import DISC
 from verification.guests.guest_protocol import ProtocolError
 from verification.problem.coated_contact import keywords
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
-from verification.running.case_result import from_json
-from verification.running.checked_files import read_checked
 
 CASE = "05_ratio_4"
 TOML = """name = "g"
@@ -33,15 +28,12 @@ class Elements:
     """The disc on a coated solid by finite elements, and at its points the exact values and their own."""
 
     def __init__(self, folder):
-        self.case = subject_of(read_case(shipped_cases()[CASE]), DISC)
-        prepare(self.case, exam_path(folder, self.case))
-        self.exam = from_json(read_checked(exam_path(folder, self.case)))
+        self.case, self.exam = prepared(CASE, folder, DISC)
         self.solution = fem_reference.solve_prescribed(**keywords(self.case.loaded))
         self.folder = folder
 
     def guest(self, axes='["r", "t", "z"]'):
-        (self.folder / "guest.toml").write_text(f"{TOML}[nodes]\naxes = {axes}\n")
-        guest = read_guest(self.folder)
+        guest = guest_in(self.folder, f"{TOML}[nodes]\naxes = {axes}\n")
         asked = question(self.case, self.exam, guest)
         place = place_of(guest, self.case, asked)
         place.mkdir(parents=True, exist_ok=True)

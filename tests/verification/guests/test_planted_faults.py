@@ -3,27 +3,29 @@
 from dataclasses import replace
 from functools import partial
 from importlib import import_module
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from faults_planted.fault_catalogue import FAULTS
 from faults_planted.fault_planting import planted
+from guest_exams import prepared, question, verdicts_on
 
 from verification.cases.case_file import read_case, shipped_cases
 from verification.commands.common.known_folders import RECORDS
 from verification.evidence.fault_record import read_record
-from verification.guests.case_exam import claims_of, prepare, question_of
-from verification.guests.doors.program_door import TimedAnswer
-from verification.guests.doors.serve_function import called, problem_of, values_of
-from verification.guests.exam_subjects import DISC, PLANE, SPHERE, SQUARE, subject_of
+from verification.guests.doors.own_python import called, keywords
+from verification.guests.doors.serve_function import problem_of, values_of
+from verification.guests.exam_subjects import DISC, PLANE, SPHERE, SQUARE
 from verification.guests.guest_description import read_guest
-from verification.guests.guest_protocol import VERSION, GuestAnswer, LineOfPoints
-from verification.guests.guest_verdicts import judged
+from verification.guests.guest_protocol import (
+    VERSION,
+    GuestAnswer,
+    Layer,
+    LineOfPoints,
+    Question,
+    SphereProblem,
+)
 from verification.judging.verdict import Outcome
-from verification.problem.coated_contact import CoatedContact
-from verification.running.case_result import from_json
-from verification.running.checked_files import read_checked
 from verification.running.json_records import plain
 
 OWN = {"semianalytic": "semianalytic", "fem_reference": "finite_elements"}
@@ -53,11 +55,7 @@ class Examiner:
 
     def exam(self, name, load):
         if (name, load) not in self.known:
-            case = subject_of(replace(read_case(shipped_cases()[name]), numerics={}), load)
-            path = self.folder / f"{case.name}.json"
-            if not path.exists():
-                prepare(case, path)
-            self.known[name, load] = case, from_json(read_checked(path))
+            self.known[name, load] = prepared(name, self.folder, load, numerics={})
         return self.known[name, load]
 
     def failing(self, method, name, load, numbers_only=False):
@@ -72,16 +70,15 @@ class Examiner:
         own = own if load == SPHERE and "edge_correction" in own else {}
         if load == SPHERE and method == "semianalytic" and stated.approach is not None:
             own = {"load": None, "approach": stated.approach}
-        question = question_of(case, exam, guest, claims_of(case, guest), {})
-        given = {"protocol": VERSION, "id": question.id}
+        asked = question(case, exam, guest)
+        given = {"protocol": VERSION, "id": asked.id}
         try:
-            problem = problem_of(question)
-            solution = called(lambda **given: ADAPTERS[method].solve(**given | own), problem, {})
-            answer = GuestAnswer(**given, **plain(vars(values_of(solution, problem, question))))
+            solution = called(ADAPTERS[method].solve, keywords(asked.model_dump()) | own)
+            answer = GuestAnswer(**given, **plain(values_of(solution, problem_of(asked), asked)))
         except Exception as error:
             answer = GuestAnswer(**given, error=str(error)[:500])
-        result = judged(guest, case, exam, [TimedAnswer(answer, 0.0)])
-        return {(c.quantity, c.line, v.outcome) for c, v in result.verdicts if v.outcome not in PASSED}
+        found = verdicts_on(case, exam, answer, guest)
+        return {(*key, verdict.outcome) for key, verdict in found.items() if verdict.outcome not in PASSED}
 
     def caught(self, fault):
         """Where the examination shows ``fault``, the cheapest questions first; None where it does not."""
@@ -139,9 +136,10 @@ def test_stresses_of_a_whole_plane_are_interpolated():
         "z": z,
         "layer": [0] * 3,
     }
-    problem = CoatedContact(1.0, 1.0, (), (1e3, 0.3))
-    asked = SimpleNamespace(contact=(), lines=[LineOfPoints(**line)], edge=None)
-    values = values_of(result, problem, asked).values
+    solid = {"coatings": [], "substrate": Layer(E=1e3, nu=0.3)}
+    problem = SphereProblem(radius=1.0, load=1.0, friction=0.0, **solid)
+    asked = Question(id="x", problem=problem, contact=[], lines=[LineOfPoints(**line)])
+    values = values_of(result, problem_of(asked), asked)["values"]
     exact = np.array(at) ** 3 + 0.6 * np.array(at[::-1])
     assert values[PLANE] == {"sigma_xz": approx(2 * exact), "sigma_yy": approx(4 * exact)}
 

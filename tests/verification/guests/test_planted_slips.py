@@ -8,15 +8,11 @@ import numpy as np
 import pytest
 from guest_exams import GUEST, prepared, result_of
 
-from verification.cases.case_file import read_case, shipped_cases
-from verification.guests.case_exam import exam_path, prepare
 from verification.guests.diagnosis.other_solutions import other_values, sampled
 from verification.guests.diagnosis.slip_diagnosis import causes_of
-from verification.guests.exam_subjects import DISC, subject_of
+from verification.guests.exam_subjects import DISC
 from verification.judging.verdict import Outcome
 from verification.problem.quantity import DISPLACEMENTS, STRESSES
-from verification.running.case_result import from_json
-from verification.running.checked_files import read_checked
 from verification.sources.source_registry import SOURCES
 
 CASE = "08_dlc_chromium_steel"  # two coatings of unlike thickness and material
@@ -210,9 +206,7 @@ def test_planted_slips_are_named_exactly_and_no_other(code, sets, share):
 
 
 def test_a_slip_under_a_prescribed_load_is_named_and_one_rough_point_is_not(tmp_path):
-    case = subject_of(read_case(shipped_cases()["01_uncoated_steel"]), DISC)
-    prepare(case, exam_path(tmp_path, case))
-    exam = from_json(read_checked(exam_path(tmp_path, case)))
+    case, exam = prepared("01_uncoated_steel", tmp_path, DISC)
     values = {(p.quantity, p.line): p.value for p in exam.profiles if p.line != "contact"}
     assert causes_of(case, result_of(case, exam, values), GUEST.name) == ()
     rough = values["sigma_zz", "axis"].copy()
@@ -227,9 +221,7 @@ def test_a_slip_under_a_prescribed_load_is_named_and_one_rough_point_is_not(tmp_
 
 @pytest.mark.slow
 def test_slips_of_stresses_alone_under_a_prescribed_load_are_named_exactly(tmp_path):
-    case = subject_of(read_case(shipped_cases()[CASE]), DISC)
-    prepare(case, exam_path(tmp_path, case))
-    exam = from_json(read_checked(exam_path(tmp_path, case)))
+    case, exam = prepared(CASE, tmp_path, DISC)
     positions = {p.line: p.position for p in exam.profiles}
     wanted = {(p.quantity, p.line) for p in exam.profiles if p.quantity in STRESSES}
     places = {n: case.line(n).points(x)[:2] for n, x in positions.items() if n != "contact"}

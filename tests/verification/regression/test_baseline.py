@@ -2,12 +2,11 @@
 
 import json
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from quick_case import QUICK, coatcheck
-from synthetic_results import INFO, STEEL, contact, result_of
+from synthetic_results import INFO, STEEL, contact, result_of, run_directory
 
 from verification.cases.case_file import default_cases
 from verification.cases.published_file import published_cases
@@ -22,8 +21,6 @@ from verification.regression.baseline_change import (
 )
 from verification.regression.baseline_file import path_in, points_by_line, read_baseline, write_baseline
 from verification.regression.number_drift import RELATIVE, State, drift, measured
-from verification.report.report_material import ReportMaterial
-from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, to_json
 from verification.running.checked_files import write_checked
 
@@ -132,14 +129,6 @@ def test_an_update_keeps_every_reason_with_what_changed(tmp_path):
     assert case_drift(RESULT, stored).state is State.DRIFTED
 
 
-def run_directory(folder: Path, results: list[CaseResult]) -> None:
-    """What a run leaves: the report with a checked file beside it for each case."""
-    folder.mkdir()
-    (folder / "report.json").write_text(report_json(ReportMaterial(results, INFO)))
-    for result in results:
-        write_checked(folder / "cases" / f"{result.name}.json", to_json(result))
-
-
 def test_the_command_refuses_in_one_sentence_and_writes_nothing(tmp_path):
     partial = [result_of(contact(), name="01_uncoated_steel", points=9)]
     run_directory(tmp_path / "partial", partial)
@@ -219,10 +208,9 @@ def changed_by(result: CaseResult, share: float) -> CaseResult:
 def test_the_shipped_baseline_is_whole_small_and_has_its_reasons():
     stored = read_baseline(BASELINE)
     assert stored is not None
-    contacts = [name for name in stored.cases if not stored.published(name)]
+    contacts = [name for name, case in stored.cases.items() if not case.published]
     assert set(contacts) == set(default_cases())
     assert set(stored.cases) <= {*default_cases(), *published_cases()}
-    assert set(stored.manifests) == set(stored.cases)
     assert path_in(BASELINE).stat().st_size < 1_200_000  # 492,000 numbers, 2.4 bytes each
     assert all(update.why and update.when and update.versions for update in stored.history)
 
@@ -230,13 +218,14 @@ def test_the_shipped_baseline_is_whole_small_and_has_its_reasons():
 def test_numbers_that_could_be_taken_for_others_are_not_stored(tmp_path):
     stored = read_baseline(BASELINE)
     assert stored is not None
-    for name, numbers in stored.cases.items():
-        points_by_line(name, numbers)
+    for name, case in stored.cases.items():
+        points_by_line(name, case.numbers)
     known = baseline_of(RESULT)
-    first, *rest = known.cases[RESULT.name]
+    first, *rest = known.cases[RESULT.name].numbers
     for wrong, message in (
         ([first, first, *rest], "same source, quantity and line"),
         ([first, replace(first, quantity="other", position=first.position + 1.0), *rest], "other points"),
     ):
+        case = replace(known.cases[RESULT.name], numbers=tuple(wrong))
         with pytest.raises(ValueError, match=message):
-            write_baseline(tmp_path, replace(known, cases={RESULT.name: tuple(wrong)}))
+            write_baseline(tmp_path, replace(known, cases={RESULT.name: case}))

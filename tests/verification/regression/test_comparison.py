@@ -6,13 +6,11 @@ from functools import partial
 from pathlib import Path
 
 from quick_case import coatcheck
-from synthetic_results import INFO, STEEL, contact, result_of
+from synthetic_results import INFO, STEEL, contact, result_of, run_directory
 
 from verification.judging.verdict import Outcome
 from verification.regression.number_drift import State
 from verification.regression.run_comparison import compare_runs
-from verification.report.report_material import ReportMaterial
-from verification.report.report_page import report_json
 from verification.running.case_result import CaseResult, RunInfo
 from verification.running.stored_run import StoredRun
 
@@ -29,11 +27,6 @@ WRONG = result_of(
 
 def run_of(*results: CaseResult, info: RunInfo = INFO) -> StoredRun:
     return StoredRun(Path("somewhere/report.json"), info, results)
-
-
-def write(folder: Path, *results: CaseResult, info: RunInfo = INFO) -> None:
-    folder.mkdir(parents=True)
-    (folder / "report.json").write_text(report_json(ReportMaterial(results, info)))
 
 
 def test_a_run_beside_itself_shows_nothing():
@@ -74,8 +67,8 @@ def test_cases_versions_and_times_of_one_run_only_are_told():
 
 
 def test_the_command_says_it_by_code_and_by_words(tmp_path):
-    write(tmp_path / "a", GOOD)
-    write(tmp_path / "b", WRONG)
+    run_directory(tmp_path / "a", [GOOD])
+    run_directory(tmp_path / "b", [WRONG])
     compare = partial(coatcheck, "compare", cwd=tmp_path)
     assert compare("a", "a").returncode == 0
     worse = compare("a", "b")

@@ -99,10 +99,16 @@ def test_a_run_that_judges_less_ends_with_code_6_and_says_so_first(tmp_path):
     done = coatcheck(*words, cwd=tmp_path)
     assert (done.returncode, "manifest:" in done.stdout) == (0, False)
 
-    (group,) = known.manifests["quick"].comparisons
-    narrower = replace(group, judged=replace(group.judged, cap=group.judged.cap / 2))
-    manifests = {"quick": replace(known.manifests["quick"], comparisons=(narrower,))}
-    write_baseline(tmp_path / "base", replace(known, manifests=manifests))
+    case = known.cases["quick"]
+    (group,) = case.manifest.comparisons
+
+    def record(times: float) -> None:
+        """A baseline whose cap of the one comparison is another."""
+        other = replace(group, judged=replace(group.judged, cap=group.judged.cap * times))
+        manifest = replace(case.manifest, comparisons=(other,))
+        write_baseline(tmp_path / "base", replace(known, cases={"quick": replace(case, manifest=manifest)}))
+
+    record(0.5)
     done = coatcheck(*words, cwd=tmp_path)
     assert done.returncode == 6
     assert "manifest:" in done.stdout
@@ -111,7 +117,5 @@ def test_a_run_that_judges_less_ends_with_code_6_and_says_so_first(tmp_path):
     assert 'name="manifest"' in (tmp_path / "reports" / "junit.xml").read_text()
     assert json.loads((tmp_path / "reports" / "report.json").read_text())["baseline"]["manifest"][0]["less"]
 
-    more = replace(group, judged=replace(group.judged, cap=group.judged.cap * 2))
-    manifests = {"quick": replace(known.manifests["quick"], comparisons=(more,))}
-    write_baseline(tmp_path / "base", replace(known, manifests=manifests))
+    record(2.0)
     assert coatcheck(*words, cwd=tmp_path).returncode == 0

@@ -29,8 +29,8 @@ def cases():
     assert stored is not None
     found = {}
     for name, path in shipped_cases().items():
-        profiles = {(n.quantity, n.line, n.source): n for n in stored.cases[name]}
-        found[name] = read_case(path), stored.cases[name], profiles
+        numbers = stored.cases[name].numbers
+        found[name] = read_case(path), numbers, {(n.quantity, n.line, n.source): n for n in numbers}
     return found
 
 

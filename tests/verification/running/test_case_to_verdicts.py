@@ -62,6 +62,15 @@ def sources(**changed):
     return {"semianalytic": exact, "fem_reference": exact, "integral_equation": exact} | changed
 
 
+def failing(message="no"):
+    """A source that raises."""
+
+    def solve(problem, numerics=None):
+        raise ValueError(message)
+
+    return solve
+
+
 def verdicts(result, source):
     return [v for claim, v in result.verdicts if source in claim.between]
 
@@ -83,10 +92,8 @@ def test_sources_that_are_the_same_agree_in_every_claim(case):
 
 
 def test_source_that_raises_is_no_result_with_its_sentence_and_the_others_go_on(case):
-    def broken(problem, _):
-        raise ValueError("load balance off by 3e-3 after 200 iterations; widen the grid")
-
     begin = time.perf_counter()
+    broken = failing("load balance off by 3e-3 after 200 iterations; widen the grid")
     result = run(case, sources(semianalytic=broken))
     assert all(0 <= source.seconds <= time.perf_counter() - begin for source in result.sources)
     assert {v.outcome for v in verdicts(result, "semianalytic")} == {Outcome.NO_RESULT}
@@ -119,10 +126,7 @@ def test_values_that_are_not_finite_never_agree(case, name, bad):
 
 
 def test_result_survives_strict_json_to_the_last_bit(case):
-    def broken(problem, _):
-        raise ValueError("no")
-
-    result = run(case, sources(semianalytic=broken))
+    result = run(case, sources(semianalytic=failing()))
     text = json.dumps(to_json(result), allow_nan=False)
     back = from_json(json.loads(text))
     assert json.dumps(to_json(back), allow_nan=False) == text
@@ -144,9 +148,6 @@ def test_hertz_is_asked_where_all_moduli_are_equal(tmp_path):
 
 
 def test_a_case_that_both_methods_fail_ends_without_results_though_a_closed_form_is_left():
-    def fails(*_):
-        raise ValueError("no")
-
-    available = {"semianalytic": fails, "fem_reference": fails, "hertz": solvers()["hertz"]}
+    available = dict.fromkeys(("semianalytic", "fem_reference"), failing()) | {"hertz": solvers()["hertz"]}
     result = run(read_case(shaped_cases()["24_ellipse"]), available)
     assert {verdict.outcome for _, verdict in result.verdicts} == {Outcome.NO_RESULT}

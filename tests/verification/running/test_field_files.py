@@ -7,6 +7,7 @@ from case_texts import case_text
 import fem_reference
 import semianalytic
 from verification.cases.case_file import parse_case
+from verification.problem.coated_contact import keywords
 from verification.problem.quantity import STRESSES
 from verification.running.checked_files import StoreError
 from verification.running.stored_fields import confirm_fields, write_fields
@@ -26,9 +27,7 @@ def case(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def solutions(case):
-    problem = {
-        name: getattr(case.problem, name) for name in ("radius", "load", "coatings", "substrate", "friction")
-    }
+    problem = keywords(case.problem)
     return {
         "semianalytic": semianalytic.solve(**problem, patches=65, estimate_uncertainty=False),
         "fem_reference": fem_reference.solve(**problem, size=0.5, estimate_uncertainty=False),
@@ -71,8 +70,7 @@ class SideBySide:
 
 
 def solved(case):
-    problem = {k: getattr(case.problem, k) for k in ("radius", "load", "coatings", "substrate", "friction")}
-    return fem_reference.solve(**problem, estimate_uncertainty=False)
+    return fem_reference.solve(**keywords(case.problem), estimate_uncertainty=False)
 
 
 def beside(case):

@@ -49,9 +49,9 @@ CSV = (
 def files(tmp_path):
     """Writes a case of one table and reads it."""
 
-    def read(toml=TOML, csv=CSV):
+    def read(csv=CSV):
         (tmp_path / "t.csv").write_text(csv)
-        (tmp_path / "curve.toml").write_text(toml)
+        (tmp_path / "curve.toml").write_text(TOML)
         return read_published(tmp_path / "curve.toml")
 
     return read
@@ -72,28 +72,26 @@ def test_a_sphere_without_a_load_is_a_loading_curve(files):
     assert {claim.line.rsplit(" ", 1)[1] for claim in case.claims} == {"k", "old", "d", "s"}
 
 
+def run_exactly(case):
+    """The result by the exact reference alone; the verdicts on it by column."""
+    result = run(case, {"integral_equation": solvers()["integral_equation"]})
+    return result, {c.line.rsplit(" ", 1)[1]: v for c, v in result.verdicts if EXACT[0] in c.between}
+
+
 def test_every_value_is_judged_and_departures_are_shown(files):
-    exact = {"integral_equation": solvers()["integral_equation"]}
-    result = run(files(), exact)
-    judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in result.verdicts if EXACT[0] in c.between}
-    assert judged["k"] is Outcome.AGREES
-    assert judged["s"] is Outcome.AGREES
-    assert judged["old"] is Outcome.AGREES
+    result, judged = run_exactly(files())
+    assert {judged[name].outcome for name in ("k", "s", "old")} == {Outcome.AGREES}
     assert from_json(to_json(result)).problem["control"] == "contact_radius"
     page = render(ReportMaterial([result], INFO))
     assert "Departures" in page
     assert "stiffness" in " ".join(Document(page).whole("figcaption"))
-    wrong = run(files(csv=CSV.replace("2.483525", "2.483535")), exact)
-    judged = {c.line.rsplit(" ", 1)[1]: v.outcome for c, v in wrong.verdicts if EXACT[0] in c.between}
-    assert judged["k"] is Outcome.DISAGREES
+    _, judged = run_exactly(files(csv=CSV.replace("2.483525", "2.483535")))
+    assert judged["k"].outcome is Outcome.DISAGREES
 
 
 @pytest.mark.parametrize(
     "name", [n for n in SHIPPED if isinstance(read_published(SHIPPED[n]).problem, LoadingCurve)]
 )
 def test_exact_reference_meets_every_shipped_curve(name):
-    result = run(read_published(SHIPPED[name]), {"integral_equation": solvers()["integral_equation"]})
-    reasons = [
-        v.reason for c, v in result.verdicts if EXACT[0] in c.between and v.outcome is not Outcome.AGREES
-    ]
-    assert reasons == []
+    _, judged = run_exactly(read_published(SHIPPED[name]))
+    assert [v.reason for v in judged.values() if v.outcome is not Outcome.AGREES] == []

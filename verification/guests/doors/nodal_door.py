@@ -50,7 +50,7 @@ def answer_of(path: Path, axes: list[str], question: Question, stated: bool) -> 
         result[name] = partial(nodes.field, name, 0)
         if stated:
             result[f"{name}_uncertainty"] = partial(nodes.field, name, 1)
-    found: dict[str, Any] = plain(vars(values_of(result, problem, question)))
+    found: dict[str, Any] = plain(values_of(result, problem, question))
     return found | {"warnings": nodes.remarks}
 
 

@@ -1,7 +1,8 @@
 """The door of Python functions in an environment of their own: PYTHON own_python.py MODULE:FUNCTION.
 
 This file needs numpy alone, so that a code which cannot share coatcheck's environment stays in its own. It
-answers as ``serve_function`` does, without whole planes and without solutions that are sampled as they are.
+answers as ``serve_function`` does, which calls functions by it too, but without whole planes and without
+solutions that are sampled as they are.
 """
 
 from __future__ import annotations
@@ -12,6 +13,9 @@ import json
 import os
 import sys
 import traceback
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from functools import reduce
 from typing import Any
 
 import numpy as np
@@ -24,18 +28,21 @@ AROUND = np.concatenate([1 - np.geomspace(1e-4, 0.99, 60)[::-1], [1.0], 1 + np.g
 
 
 def keywords(question: dict[str, Any]) -> dict[str, Any]:
-    """The problem as the keywords of a solver, without those that are nothing."""
+    """The problem as the keywords of a solver; what a problem may lack is given too, as nothing."""
 
     def layers(found: list[dict[str, float]]) -> tuple[Any, ...]:
         return tuple((c["E"], c["nu"], c["thickness"]) for c in found)
 
-    found = {k: v for k, v in question["problem"].items() if v is not None} | question["parameter"]
+    problem = question["problem"]
+    nothing: dict[str, Any] = {} if "side" in problem else {"friction": 0.0}
+    nothing |= {"ball": None} if "load" in problem else {}
+    found = nothing | problem | question["parameter"]
     found |= {
         "coatings": layers(found["coatings"]),
         "substrate": (found["substrate"]["E"], found["substrate"]["nu"]),
     }
-    if "ball" in found:
-        found["ball"] = found["ball"]["E"], found["ball"]["nu"], layers(found["ball"]["coatings"])
+    if ball := found.get("ball"):
+        found["ball"] = ball["E"], ball["nu"], layers(ball["coatings"])
     if "radius_x" in found:
         radii = found.pop("radius_x"), found.pop("radius_y")
         found |= {"indenter": ("ellipsoid", radii), "radius": (radii[0] * radii[1]) ** 0.5}
@@ -50,51 +57,73 @@ def called(function: Any, given: dict[str, Any]) -> Any:
     return function(**given)
 
 
-def field(result: Any, name: str, x: Any, y: Any, z: Any, layers: list[int]) -> Any:
-    """Values of a function of the result at points, a call for each layer; None where it has none."""
-    function = result.get(name) if isinstance(result, dict) else getattr(result, name, None)
+def entry(result: Any, name: str) -> Any:
+    """Entry of a mapping or attribute of an object of this ``name``; None where it has none."""
+    return result.get(name) if isinstance(result, Mapping) else getattr(result, name, None)
+
+
+def field(result: Any, name: str, x: Any, y: Any, z: Any, layers: list[int], of: str = "") -> Any:
+    """Values of a function of the result at points; None where it has none.
+
+    A stress that takes ``layer`` is called for each layer.
+    of : the field whose components it has, where that is not its name.
+    """
+    function, components = entry(result, name), COMPONENTS[of or name][0]
     if function is None:
         return None
-    found = np.empty((*COMPONENTS[name][0], x.size))
+    if (of or name) != "stress" or "layer" not in inspect.signature(function).parameters:
+        return at_points(function, name, components, x, y, z)
+    found = np.empty((*components, x.size))
     for layer in sorted(set(layers)):
         at = np.flatnonzero(np.array(layers) == layer)
-        try:
-            value = at_points(function, name, x[at], y[at], z[at], layer)
-        except NotImplementedError:
-            raise
-        except Exception as error:
-            error.place = first_point(function, name, x[at], y[at], z[at], layer)  # type: ignore[attr-defined]
-            raise
+        value = at_points(function, name, components, x[at], y[at], z[at], layer=layer)
         if value is None:
             return None
         found[..., at] = value
     return found
 
 
-def at_points(function: Any, name: str, x: Any, y: Any, z: Any, layer: int) -> Any:
-    """Values of a function of the result at points of one layer, checked; None where it gives none."""
-    of = {"layer": layer} if "layer" in inspect.signature(function).parameters else {}
-    value = function(x, y) if name == "pressure" else function(x, y, z, **of)
-    if value is None:
-        return None
-    value, shape = np.asarray(value, dtype=float), (*COMPONENTS[name][0], x.size)
-    if value.shape != shape:
-        raise ValueError(f"{name} returns an array of shape {value.shape}; {shape} is needed")
-    return value
+def at_points(function: Any, name: str, components: tuple[int, ...], *points: Any, **of: Any) -> Any:
+    """Values of a function at points x, y, z, of ``components`` each; None where it gives none.
+
+    of : layer and body.   An error has the first ``place`` that it is of, at which the function fails by
+    itself.
+    """
+
+    def values(*points: Any) -> Any:
+        value = function(*points[:2]) if name.startswith("pressure") else function(*points, **of)
+        return None if value is None else shaped(name, value, (*components, *points[0].shape))
+
+    try:
+        return values(*points)
+    except NotImplementedError:
+        raise
+    except Exception as error:
+        error.place = _first_place(values, *points)  # type: ignore[attr-defined]
+        raise
 
 
-def first_point(function: Any, name: str, x: Any, y: Any, z: Any, layer: int) -> str:
-    """The first of several points, at which a function fails by itself; "" where it fails at none."""
-    for i in range(x.size if x.size > 1 else 0):
+def _first_place(values: Any, *points: Any) -> str:
+    for at in zip(*points, strict=True) if points[0].ndim == 1 and points[0].size > 1 else ():
         try:
-            at_points(function, name, x[i : i + 1], y[i : i + 1], z[i : i + 1], layer)
+            values(*(np.array([v]) for v in at))
         except Exception:
-            return f", first at x, y, z = {x[i]:.4g}, {y[i]:.4g}, {z[i]:.4g}"
+            return f", first at x, y, z = {', '.join(f'{v:.4g}' for v in at)}"
     return ""
+
+
+def shaped(name: str, value: Any, shape: tuple[int, ...]) -> Any:
+    """``value`` as an array of that shape. Raises ValueError for any other."""
+    found = np.asarray(value, dtype=float)
+    if found.shape != shape:
+        raise ValueError(f"{name} returns an array of shape {found.shape}; {shape} is needed")
+    return found
 
 
 def largest_tension(result: Any, question: dict[str, Any]) -> dict[str, float]:
     """The largest sigma_xx of the surface on y = 0 with its x, around the exact contact edge."""
+    if not question["edge"]:
+        return {}
     a = question["edge"] * AROUND
     x = np.concatenate([-a[::-1], a]) if question["problem"].get("friction") else -a[::-1]
     sigma = field(result, "stress", x, 0 * x, 0 * x, [0] * x.size)
@@ -104,40 +133,97 @@ def largest_tension(result: Any, question: dict[str, Any]) -> dict[str, float]:
     return {"largest_tension": float(sigma[0, 0, i]), "tension_place": float(x[i])}
 
 
-def answered(function: Any, question: dict[str, Any]) -> dict[str, Any]:
-    """The values by line and quantity, with the reasons of those that are missing or failed."""
-    result = called(function, keywords(question))
-    found: dict[str, Any] = {"values": {}, "missing": {}, "failed": {}}
+class Given:
+    """Values and uncertainties by line and quantity, with the reasons why others are missing or failed.
 
-    def put(line: str, quantities: list[str], make: Any) -> None:
+    refusals : exceptions that say that something is not given.
+    """
+
+    def __init__(self, refusals: tuple[type[Exception], ...] = (NotImplementedError,)) -> None:
+        self.found: dict[str, dict[str, dict[str, Any]]] = {
+            name: {} for name in ("values", "uncertainty", "missing", "failed")
+        }
+        self.refusals = refusals
+
+    def lacks(self, line: str, quantities: Iterable[str]) -> set[str]:
+        """Those of ``quantities`` that have no value on a line."""
+        return set(quantities) - set(self.found["values"].get(line, ()))
+
+    def put(self, line: str, quantity: str, value: Any, U: Any = None) -> None:
+        """One quantity; nothing where it is None."""
+        for name, one in (("values", value), ("uncertainty", U)) if value is not None else ():
+            if one is not None:
+                self.found[name].setdefault(line, {})[quantity] = one
+
+    @contextmanager
+    def without(self, line: str, quantities: Iterable[str]) -> Iterator[None]:
+        """An exception costs these quantities on this line, and no other."""
         try:
-            values = make() or {}
-            wanted = {q: values[q] for q in quantities if values.get(q) is not None}
-            found["values"].setdefault(line, {}).update(wanted)
-        except NotImplementedError as error:
-            found["missing"].setdefault(line, {}).update(
-                dict.fromkeys(quantities, str(error) or "not implemented")
-            )
+            yield
         except Exception as error:
-            found["failed"].setdefault(line, {}).update(dict.fromkeys(quantities, message(error)))
+            refused = isinstance(error, self.refusals)
+            reason = (one_line(error) or "not implemented") if refused else message(error)
+            by = self.found["missing" if refused else "failed"].setdefault(line, {})
+            by.update(dict.fromkeys(quantities, reason))
 
-    get: Any = result.get if isinstance(result, dict) else lambda name: getattr(result, name, None)
+    def answered(self, result: Any) -> dict[str, Any]:
+        """All of it, as parts of an answer. Raises NotImplementedError where ``result`` has nothing."""
+        if not any(self.found.values()):
+            names = "contact_radius, approach, peak_pressure, pressure, stress"
+            raise NotImplementedError(f"its result, {type(result).__name__}, has none of {names}")
+        return self.found
+
+
+def number(value: Any) -> float | None:
+    """A number of any shape as a float."""
+    return None if value is None else float(np.asarray(value, dtype=float).reshape(()))
+
+
+def values_of(
+    result: Any,
+    question: dict[str, Any],
+    refusals: tuple[type[Exception], ...] = (NotImplementedError,),
+    plane_of: Callable[[Any, dict[str, Any]], Any] = lambda result, line: None,
+    tension_of: Callable[[Any, dict[str, Any]], dict[str, float]] = largest_tension,
+) -> dict[str, Any]:
+    """The values by line and quantity, with the reasons of those that are missing or failed.
+
+    plane_of : the stresses on a line from a whole plane, None where it gives none.   tension_of : the largest
+    tension with its place.
+    """
+    given, uncertainty = Given(refusals), entry(result, "uncertainty")
     for name in question["contact"]:
-        put("contact", [name], lambda name=name: {} if get(name) is None else {name: float(get(name))})
+        with given.without("contact", [name]):
+            given.put("contact", name, number(entry(result, name)), number(entry(uncertainty, name)))
     peaks = {"largest_tension", "tension_place"} & set(question["contact"])
-    if peaks - set(found["values"].get("contact", ())) and question["edge"]:
-        put("contact", sorted(peaks), lambda: largest_tension(result, question))
+    if given.lacks("contact", peaks):
+        with given.without("contact", sorted(peaks)):
+            for name, value in tension_of(result, question).items():
+                given.put("contact", name, value)
     for line in (line for line in question["lines"] if line["body"] == "flat"):
-        x, y, z = (np.array(line[c]) for c in "xyz")
+        plane, (x, y, z) = None, (np.array(line[c]) for c in "xyz")
+        with given.without(line["line"], STRESSES):
+            plane = plane_of(result, line)
         for name, (_, parts) in COMPONENTS.items():
-            if wanted := [q for q in line["quantities"] if q in parts]:
+            wanted = [quantity for quantity in parts if quantity in line["quantities"]]
+            if name == "stress" and plane is not None:
+                for quantity in wanted:
+                    given.put(line["line"], quantity, plane[quantity].tolist())
+            elif wanted:
+                with given.without(line["line"], wanted):
+                    value = field(result, name, x, y, z, line["layer"])
+                    U = field(result, f"{name}_uncertainty", x, y, z, line["layer"], name)
+                    for quantity in wanted if value is not None else ():
+                        c = parts[quantity]
+                        given.put(
+                            line["line"], quantity, value[c].tolist(), None if U is None else U[c].tolist()
+                        )
+    return given.answered(result)
 
-                def make(name: str = name, parts: Any = parts, points: Any = (x, y, z, line["layer"])) -> Any:
-                    values = field(result, name, *points)
-                    return {} if values is None else {q: values[c].tolist() for q, c in parts.items()}
 
-                put(line["line"], wanted, make)
-    return found
+def one_line(error: BaseException) -> str:
+    """The text of an exception, without line ends."""
+    return " ".join(str(error).split())[:400]
 
 
 def message(error: BaseException) -> str:
@@ -145,32 +231,43 @@ def message(error: BaseException) -> str:
     frames = traceback.extract_tb(error.__traceback__)
     frame = [*frames[-1:], *(f for f in frames if f.filename.startswith(os.getcwd()))][-1]
     where = f"{os.path.basename(frame.filename)}, line {frame.lineno}"
-    text = " ".join(str(error).split())[:400] + getattr(error, "place", "")
-    return f"{type(error).__name__}: {text} ({where})"
+    return f"{type(error).__name__}: {one_line(error)}{getattr(error, 'place', '')} ({where})"
 
 
-def main(place: str) -> None:
-    """Answer every line of standard input; what the function prints goes to standard error."""
+def answer_of(
+    place: str,
+    question: dict[str, Any],
+    values_of: Callable[[Any], dict[str, Any]],
+    refusals: tuple[type[Exception], ...] = (NotImplementedError,),
+) -> dict[str, Any]:
+    """The answer of the function at ``place``, MODULE:FUNCTION; an exception becomes an answer too."""
+    answer = {"protocol": question["protocol"], "id": question["id"]}
+    try:
+        module, _, name = place.partition(":")
+        function = reduce(getattr, name.split("."), importlib.import_module(module))
+        answer |= values_of(called(function, keywords(question)))
+    except refusals as error:
+        answer["unsupported"] = one_line(error) or "not implemented"
+    except Exception as error:
+        answer["error"] = message(error)
+    return answer
+
+
+def serve(answer: Callable[[str], str]) -> None:
+    """Answer every line of standard input; what a function prints goes to standard error."""
     replies = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
     sys.path.insert(0, os.getcwd())
     for line in sys.stdin:
-        question = json.loads(line)
-        answer: dict[str, Any] = {
-            "protocol": question["protocol"],
-            "id": question["id"],
-            "units": question["units"],
-        }
-        try:
-            module, _, name = place.partition(":")
-            answer |= answered(getattr(importlib.import_module(module), name), question)
-        except NotImplementedError as error:
-            answer["unsupported"] = str(error) or "not implemented"
-        except Exception as error:
-            answer["error"] = message(error)
-        replies.write(f"COATCHECK {json.dumps(answer)}\n")
+        replies.write(f"COATCHECK {answer(line)}\n")
         replies.flush()
 
 
+def _answer(line: str) -> str:
+    question = json.loads(line)
+    found = answer_of(sys.argv[1], question, lambda result: values_of(result, question))
+    return json.dumps(found | {"units": question["units"]})
+
+
 if __name__ == "__main__":
-    main(sys.argv[1])
+    serve(_answer)
