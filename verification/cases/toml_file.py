@@ -127,12 +127,18 @@ def listed_errors(error: ValidationError, model: type[BaseModel]) -> str:
                 f"{place(*one['loc'])} is an unknown key" + (f"; did you mean {near}?" if near else "")
             )
             explained.add(place(*above, near))
-    told += [
-        f"{place(*one['loc'])} {worded(one)}"
+    rest = [
+        one
         for one in found
         if one["type"] != "extra_forbidden"
         and not (one["type"] == "missing" and place(*one["loc"]) in explained)
     ]
+    # The coatings that a repeat writes out have the same faults.
+    kinds = [repr(([key for key in one["loc"] if isinstance(key, str)], one["input"])) for one in rest]
+    for i, (one, kind) in enumerate(zip(rest, kinds, strict=True)):
+        if kind not in kinds[:i]:
+            again = f" (and {kinds.count(kind) - 1} more of the same)" if kinds.count(kind) > 1 else ""
+            told.append(f"{place(*one['loc'])} {worded(one)}{again}")
     more = len(told) - LISTED
     return "; ".join(told[:LISTED]).replace("?; ", "? ") + (f"; and {more} more" if more > 0 else "")
 

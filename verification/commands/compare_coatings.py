@@ -53,15 +53,17 @@ def compare_coatings(
     files = ["coatings.csv", "coatings.html", *(["coatings.xlsx"] if find_spec("openpyxl") else [])]
     for name in (one for one in files if not one.endswith(".html")):
         write_cells(output / name, table_rows(rows))
-    heads = [*HEADS, *VERDICT]
     if as_json:
-        print_json([dict(zip(heads, row.cells, strict=True)) for row in rows])
+        print_json([dict(zip((*HEADS, *VERDICT), row.cells, strict=True)) for row in rows])
     elif not quiet:
-        table = named_table(heads[0], *map(escape, heads[2:-1]))
+        stresses, judged = (named_table(*map(escape, ("name", *some))) for some in (HEADS[2:], VERDICT[:-1]))
         for row in rows:
             style = "bold red" if row.message or (row.governing and row.governing[1].utilisation > 1) else ""
-            table.add_row(*(escape(cell) for cell in (row.cells[0], *row.cells[2:-1])), style=style)
-        print_out(table)
+            name, _, *cells = map(escape, row.cells[:-1])
+            stresses.add_row(name, *cells[: len(HEADS) - 2], style=style)
+            if row.governing:
+                judged.add_row(name, *cells[len(HEADS) - 2 :], style=style)
+        print_out(stresses, *(["", judged] if judged.rows else []))
         for row in rows:
             if row.message:
                 print_out(escape(f"{row.name}: {row.message}"))

@@ -5,7 +5,6 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from textwrap import wrap
 from typing import Annotated, Any
 
 from cyclopts import Parameter
@@ -18,13 +17,14 @@ from verification.cases.case_file import Case, default_cases, parse_case, read_c
 from verification.cases.materials import SHIPPED as SHIPPED_MATERIALS
 from verification.cases.plausibility import refused
 from verification.cases.toml_file import NO_SOURCE, is_number, load_toml
-from verification.cases.unit_numbers import in_si
+from verification.cases.unit_numbers import in_si, is_of
 from verification.commands.common.answer_words import planes_text, spread_text, value_text
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.known_folders import require_format
 from verification.commands.common.named_files import SHIPPED, path_of
 from verification.commands.common.shared_options import AsJson, Flag, MaterialsFile, Strict
 from verification.commands.common.terminal import (
+    paragraph,
     print_error,
     print_json,
     print_out,
@@ -70,7 +70,6 @@ from verification.running.json_records import encode
 from verification.sources.source_registry import METHODS
 
 METHOD, SECOND = METHODS
-COLUMNS = 79  # of the summary
 
 
 @with_exit_code
@@ -104,7 +103,7 @@ def solve(
     """Solve one problem: size of the contact, largest stresses, their places.
 
     The semi-analytical method answers. The exit code is 1 where --check finds a difference beyond both
-    uncertainties.
+    uncertainties, and 3 where nothing is solved or the finite elements refuse to check the answer shown.
 
     Args:
         file: A case file (.toml) or the name of a shipped case; or give the problem by options.
@@ -149,6 +148,8 @@ def solve(
         ball_coating,
         temperature_change,
     )
+    if force and file is not None and is_of("N", file):
+        raise CommandError(f'--force takes no value, it confirms implausible numbers; give --load "{file}"')
     case = _from_file(file, given) if file is not None else _from_options(*given, materials)
     if plot is not None:
         from verification.desk.answer_figure import FORMATS
@@ -177,12 +178,18 @@ def solve(
             coarser = _coarser(case)
     halved = differences(first, coarser[0]) if coarser else ()
     stated = with_slicing(first, coarser)
-    second = None
+    second, refusal = None, ""
     if check:
         if not as_json:
             print_error(f"finite elements: about {usual_seconds(case.problem):.0f} s of processor time")
         with _working("finite elements", as_json):
-            second = _answer(case, SECOND)
+            try:
+                second = _answer(case, SECOND)
+            except CommandError as error:
+                why = str(error).removeprefix(f"{case.name}: {SECOND}: ")
+                refusal = f"Not checked, as the finite elements refuse this contact: {why}"
+        if refusal:
+            print_error(f"{case.name}: {refusal}")
     with _working("loads at which something fails", as_json or not case.limits):
         modes = modes_of(case, first)
     late = [*limit_warnings(case, first, modes), *strain_warnings(case, first)]
@@ -222,16 +229,25 @@ def solve(
             "verdict": verdict(case, modes),
             "modes": [encode(one) | {"utilisation": one.utilisation} for one in modes],
             "check": second and encode(second),
+            "check_refused": refusal,
             "differences": [encode(one) for one in apart],
             "half_of_the_sublayers": [encode(one) for one in halved],
         }
         print_json(content)
     else:
-        _print(case, stated, apart, halved, modes, remarks, spreaded, every=every)
-        _print_model(case, beyond, checked=second is not None)
+        told = (
+            *(f"Remark: {line}." for line in remarks),
+            agreement(stated, apart),
+            refusal and f"{refusal}.",
+        )
+        _print(case, stated, apart, halved, modes, told, spreaded, every=every)
+        hint = "; compared here by --check" if second else "" if check else "; try --check"
+        _print_model(case, beyond, hint, checked=check)
         elements = f", finite elements {second.seconds:.1f} s" if second else ""
         total = time.perf_counter() - begin
         print_out(f"time: semi-analytical {first.seconds:.1f} s{elements}; in all {total:.1f} s")
+    if refusal:
+        return EXIT[Outcome.NO_RESULT]
     agree = all(difference.within for difference in apart)
     return EXIT[Outcome.AGREES if agree else Outcome.DISAGREES]
 
@@ -343,7 +359,7 @@ def _print(
     apart: Sequence[AnswerDifference],
     halved: Sequence[AnswerDifference],
     modes: tuple[LayerMode, ...],
-    remarks: Sequence[str],
+    told: Sequence[str],
     spread: Spread | None,
     *,
     every: bool,
@@ -353,7 +369,7 @@ def _print(
     units = units_of(case.problem)
     decimals = max(2, 3 - math.floor(math.log10(first.numbers["contact_radius"][0] / units.metre)))
 
-    def checked(key: tuple[str, ...], unit: float) -> list[str]:
+    def beside(key: tuple[str, ...], unit: float) -> list[str]:
         shown = {head: f"{found[key].value / unit:+.1e}" for head, found in more.items()}
         beyond = apart and not more["elements − this"][key].within
         return [f"[bold red]{s}[/]" if beyond and h.startswith("elements") else s for h, s in shown.items()]
@@ -370,7 +386,7 @@ def _print(
         unit, scale = (units.stress, units.pascal) if si == "Pa" else (units.length, units.metre)
         cells = [value_text(value / scale, stated and stated / scale), spread_text(stated, scale)]
         ends = [f"{end / scale:.4g}" for end in spread.ends[name,]] if spread else []
-        numbers.add_row(symbol, unit, *cells, *checked((name,), scale), *ends)
+        numbers.add_row(symbol, unit, *cells, *beside((name,), scale), *ends)
     body = FLAT
     for at in first.extremes if every else worst_of_each(case, first.extremes):
         if at.body != body:
@@ -383,20 +399,19 @@ def _print(
         shown = [value_text(at.value / units.pascal, at.uncertainty / units.pascal)]
         shown.append(spread_text(at.uncertainty, units.pascal))
         ends = [f"{end / units.pascal:.4g}" for end in spread.ends[key]] if spread else []
-        table.add_row(at.quantity, where, *shown, *places, *ends, *checked(key, units.pascal))
+        table.add_row(at.quantity, where, *shown, *places, *ends, *beside(key, units.pascal))
     said = (
         summary(case.problem, first, case.names),
         verdict(case, modes),
         spread.sentence(case, modes) if spread else "",
-        *(f"Remark: {line}." for line in remarks),
-        agreement(first, tuple(apart)),
+        *told,
     )
     print_out(
         f"[bold]{escape(case.title)}[/]",
         escape(stack(case)),
-        *(escape(line) for line in wrap(f"source: {case.source}", COLUMNS) if case.source != NO_SOURCE),
+        *(escape(line) for line in paragraph(f"source: {case.source}") if case.source != NO_SOURCE),
         "",
-        *(escape(line) for text in said for line in wrap(text, COLUMNS)),
+        *(escape(line) for text in said for line in paragraph(text)),
         "",
         *(escape(line) for line in described(case, every=every)),
         "",
@@ -413,7 +428,7 @@ def _print(
         print_out("± contains the slicing: at least the change by half the sub-layers, in the plane thrice")
 
 
-def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:
+def _print_model(case: Case, beyond: ModelError, hint: str, *, checked: bool) -> None:
     """Prints what the answer is good for: error of the model, range of the verification."""
     if beyond.parts:
         head = "the model itself is good to"
@@ -422,8 +437,7 @@ def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:
         reasons = ", ".join(dict.fromkeys(reason for _, reason in beyond.missing))
         print_out(escape(f"{beyond.message()}: {reasons}"))
     if outside := outside_verified(case):
-        hint = "compared here by --check" if checked else "try --check"
-        print_out(escape(f"beyond the range in which both methods were compared: {outside}; {hint}"))
+        print_out(escape(f"beyond the range in which both methods were compared: {outside}{hint}"))
     if unused := _unused(case, checked=checked):
         print_out(escape(f"for coatcheck run: {', '.join(unused)}"))
     if case.residual:

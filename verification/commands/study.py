@@ -114,7 +114,9 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
     jobs, shipped = worker_count(options.jobs), shipped_studies()
     chosen = read_study_file(path_of(plan, shipped, f"study ({', '.join(shipped)})"))
     if loads != (chosen.loads is not None):
-        what = "sweeps the load; use coatcheck study load" if chosen.loads else "has no sweep.load"
+        what = "sweeps the load; use coatcheck study load"
+        if loads:
+            what = "has no sweep.load; use coatcheck study thickness, or coatcheck study init load"
         raise CommandError(f"{plan}: this study {what}")
     if loads and chosen.criteria.strength is None:
         raise CommandError(f"{plan}: criteria.strength is missing; a critical load needs strengths")

@@ -6,8 +6,11 @@ from verification.cases.case_file import Case
 from verification.cases.drawn_ranges import (
     FILM_RATIO,
     FILM_THICKNESS,
+    FRICTION,
+    MOST_COATINGS,
     MOST_FILMS,
     OVER_INTERLAYER,
+    POISSON,
     RATIO,
     THICKNESS,
 )
@@ -118,11 +121,20 @@ def outside_verified(case: Case) -> str:
     counts too.
     """
     problem, found = case.problem, []
+    if problem.friction > FRICTION[1]:
+        found.append((f"friction f = {problem.friction:g}", f"outside {_between(FRICTION)}"))
     a = own_radius(problem)
     for body in problem.bodies:
         seen, of = problem.seen_from(body), "" if body == FLAT else f" on the {body}"
         thickness, ratio = (FILMS, FILM_RATIO) if _films(problem) else (THICKNESS, RATIO)
-        for i, layers in enumerate(_coatings(seen, case.layers.get(body)), start=1):
+        coatings = _coatings(seen, case.layers.get(body))
+        if len(coatings) > MOST_COATINGS:
+            found.append((f"{len(coatings)} coatings{of}", f"outside {_between((0, MOST_COATINGS))}"))
+        solids = [(f"coating {i}{of}", layers[0][1]) for i, layers in enumerate(coatings, start=1)]
+        for name, nu in (*solids, ("substrate" if body == FLAT else body, seen.substrate[1])):
+            if not POISSON[0] <= nu <= POISSON[1]:
+                found.append((name, f"nu = {nu:g}, outside {_between(POISSON)}"))
+        for i, layers in enumerate(coatings, start=1):
             h = sum(h for *_, h in layers)
             low, high = thickness[0] * (1 - 1e-3), thickness[1] * (1 + 1e-3)
             if not any(low <= h / radius <= high for radius in (a, problem.a_h)):
