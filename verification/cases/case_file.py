@@ -304,13 +304,6 @@ class _FemNumerics(Strict):
 
 
 class _CaseFile(Strict):
-    @model_validator(mode="before")
-    @classmethod
-    def _no_study(cls, given: Any) -> Any:
-        if isinstance(given, dict) and "sweep" in given:
-            raise ValueError("has a sweep, which is that of a study: try coatcheck study thickness with it")
-        return given
-
     title: Text
     source: Text = NO_SOURCE
     problem: _CaseProblem

@@ -107,11 +107,26 @@ def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checke
     """The text of a TOML file with its content checked against ``model``. Raises CaseError."""
     try:
         text, content = load_toml(raw)
+        _refuse_other_kind(content, model)
         return text, model.model_validate(content)
     except ValidationError as error:
         raise CaseError(f"{path}: {listed_errors(error, model)}") from None
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from None
+
+
+def _refuse_other_kind(content: dict[str, Any], model: type[BaseModel]) -> None:
+    """Raises ValueError where a case is given for a study, or a study for anything else."""
+    asked = "sweep" in model.model_fields
+    if asked and "sweep" not in content:
+        raise ValueError(
+            "the file has no sweep, which a study has and a case has not: try coatcheck solve or coatcheck "
+            "run with it, or change the study that coatcheck study init thickness writes"
+        )
+    if "sweep" in content and not asked:
+        raise ValueError(
+            "the file has a sweep, which is that of a study: try coatcheck study thickness with it"
+        )
 
 
 def listed_errors(error: ValidationError, model: type[BaseModel]) -> str:

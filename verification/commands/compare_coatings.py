@@ -6,7 +6,6 @@ from importlib.util import find_spec
 from multiprocessing import get_context
 from pathlib import Path
 
-from rich.console import Console
 from rich.markup import escape
 
 from verification.commands.common.shared_options import AsJson, Jobs, Output, Quiet
@@ -43,7 +42,7 @@ def compare_coatings(
 
     jobs, begin = worker_count(jobs), time.perf_counter()
     cases, rows = read_rows(file), []
-    with progress_bar(Console(stderr=True), silent=quiet or as_json) as bar:
+    with progress_bar(silent=quiet or as_json) as bar:
         task = bar.add_task("coatings", total=len(cases))
         with ProcessPoolExecutor(min(jobs, len(cases)), mp_context=get_context("spawn")) as pool:
             for row in pool.map(solved_row, cases):

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from cyclopts import Parameter
-from rich.console import Console
 from rich.markup import escape
 from rich.progress import TaskID
 
@@ -209,7 +208,7 @@ def _forecast(chosen: Study, output: Path, jobs: int) -> str:
 @contextmanager
 def _bars(silent: bool) -> Iterator[tuple[Callable[[str, int, int], None], Callable[[str], None]]]:
     """Progress bars, unless ``silent``: points of each source, from the first second; then the figures."""
-    bar = progress_bar(Console(stderr=True), silent=silent)
+    bar = progress_bar(silent=silent)
     tasks: dict[str, TaskID] = {}
 
     def report(source: str, done: int, total: int) -> None:

@@ -16,7 +16,7 @@ from itertools import permutations
 from pathlib import Path
 
 from verification.cases.materials import SHIPPED, meant, plain_name, read_materials
-from verification.cases.toml_file import is_number
+from verification.cases.toml_file import CaseError, is_number
 from verification.cases.unit_numbers import NUMBER, in_si, is_of
 
 _D, _R = r"d|D|dia\.?|diam\.?|diameter|Ø|ø|⌀", r"r|R|radius"
@@ -168,12 +168,15 @@ def _crowned(text: str) -> list[str]:
 
 def _radius(given: str, key: str, word: str) -> str:
     """The radius of a size, see ``_size``; ``given`` names it where it is no number with a unit."""
-    if key == "radius":
-        return word
+    return word if key == "radius" else repr(metres(given, word) / 2)
+
+
+def metres(given: str, word: str) -> float:
+    """A length in words, bare in metres. Raises CaseError, which begins with what was ``given``."""
     try:
-        return repr((float(word) if is_number(word) else in_si(word, "m")) / 2)
+        return float(word) if is_number(word) else in_si(word, "m")
     except ValueError as error:
-        raise ValueError(f"{given}: {error}, not {word!r}") from None
+        raise CaseError(f"{given}: {error}, not {word!r}") from None
 
 
 def _named(word: str) -> tuple[str, str]:
@@ -214,8 +217,7 @@ def _coating(option: str, text: str, solid: Solid) -> str:
             _toml(f"{number} {unit or graded[4]}")
             for number, unit in (graded.groups()[:2], graded.groups()[2:])
         )
-        E = 'course = "linear", top = {}, base = {}'.format(*ends)
-        E = f"{{ {E} }}, layers = {SUBLAYERS}"
+        E = '{{ course = "linear", top = {}, base = {} }}, layers = {}'.format(*ends, SUBLAYERS)
     return f"{{ {called}thickness = {thickness}, E = {E}, nu = {nu} }}"
 
 

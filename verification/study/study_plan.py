@@ -252,16 +252,6 @@ class _Fem(Strict):
 
 
 class _StudyFile(Strict):
-    @model_validator(mode="before")
-    @classmethod
-    def _no_case(cls, given: Any) -> Any:
-        if isinstance(given, dict) and "sweep" not in given:
-            raise ValueError(
-                "has no sweep, which a study has and a case has not: try coatcheck solve or coatcheck run "
-                "with it, or change the study that coatcheck study init thickness writes"
-            )
-        return given
-
     title: Text
     source: Text = NO_SOURCE
     problem: _SweptProblem
