@@ -208,8 +208,8 @@ def _coating(option: str, text: str, solid: Solid) -> str:
     called, words = solid(option, text)
     orders = [order for order in permutations(words) if _fits(*order)]
     if orders and not _fits(*words):
-        right = ", ".join(max(orders, key=lambda order: float(order[2])))
-        raise ValueError(f'{option} "{text}": the order is thickness, E, nu, "{right}"')
+        right = max(orders, key=lambda order: float(order[2]))
+        raise ValueError(f'{option} "{text}": the order is thickness, E, nu, "{", ".join(right)}"')
     graded = _GRADED.fullmatch(words[1])
     thickness, E, nu = map(_toml, words)
     if graded:
