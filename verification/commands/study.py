@@ -208,7 +208,6 @@ def _forecast(chosen: Study, output: Path, jobs: int) -> str:
 @contextmanager
 def _bars(silent: bool) -> Iterator[tuple[Callable[[str, int, int], None], Callable[[str], None]]]:
     """Progress bars, unless ``silent``: points of each source, from the first second; then the figures."""
-    bar = progress_bar(silent=silent)
     tasks: dict[str, TaskID] = {}
 
     def report(source: str, done: int, total: int) -> None:
@@ -221,5 +220,5 @@ def _bars(silent: bool) -> Iterator[tuple[Callable[[str, int, int], None], Calla
             tasks["drawing"] = bar.add_task("", total=FIGURE_GROUPS)
         bar.update(tasks["drawing"], advance=1, description=f"drawing: {name}")
 
-    with bar:
+    with progress_bar(silent=silent) as bar:
         yield report, drawing

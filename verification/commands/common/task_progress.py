@@ -84,9 +84,8 @@ def solve(
     verbose : print seconds, iterations and unknowns of every source.
     executor, meanwhile : as in ``run_tasks``.
     """
-    bar = progress_bar(silent=silent)
     at_work: list[str] = []
-    with bar:
+    with progress_bar(silent=silent) as bar:
         task = bar.add_task("solving", total=len(tasks))
 
         def started(name: str) -> None:

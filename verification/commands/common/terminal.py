@@ -124,8 +124,8 @@ def print_out(*items: "Table | str") -> None:
             names, *others = [max(map(len, (one.header, *one.cells))) for one in item.columns]
             for column, longest in zip(item.columns[1:], others, strict=True):
                 column.no_wrap = column.no_wrap or longest <= SHORT
-            room = console.width - sum(2 + min(longest, SHORT) for longest in others)
-            item.columns[0].no_wrap = names <= room
+            beside = sum(2 + min(longest, SHORT) for longest in others)
+            item.columns[0].no_wrap = names + beside <= console.width
         console.print(item)
 
 

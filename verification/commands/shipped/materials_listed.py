@@ -25,8 +25,7 @@ def materials(*names: str, file: Path = SHIPPED, as_json: AsJson = False) -> int
         if (found := known.get(plain_name(name))) is None:
             raise CommandError(f"{name}: not in {file}{meant(name, known)}")
         chosen.append(found)
-    every = list({one.name: one for one in known.values()}.values())
-    chosen = chosen or every
+    chosen = chosen or list({one.name: one for one in known.values()}.values())
     if as_json:
         print_json([one.model_dump(exclude_none=True) for one in chosen])
         return 0
