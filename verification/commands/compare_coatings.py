@@ -62,7 +62,7 @@ def compare_coatings(
             stresses.add_row(name, *cells[: len(HEADS) - 2], style=style)
             if row.governing:
                 judged.add_row(name, *cells[len(HEADS) - 2 :], style=style)
-        print_out(stresses, *(["", judged] if judged.rows else []))
+        print_out(stresses, "", *([judged] if judged.rows else []))
         for row in rows:
             if row.message:
                 print_out(escape(f"{row.name}: {row.message}"))

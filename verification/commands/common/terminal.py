@@ -121,7 +121,7 @@ def print_out(*items: "Table | str") -> None:
     for item in items:
         if isinstance(item, Table):
             # Numbers never give way, names only where there is no room for the words beside them.
-            names, *others = [max(map(len, (one.header, *one.cells))) for one in item.columns]
+            names, *others = (max(len(str(one)) for one in (c.header, *c.cells)) for c in item.columns)
             for column, longest in zip(item.columns[1:], others, strict=True):
                 column.no_wrap = column.no_wrap or longest <= SHORT
             beside = sum(2 + min(longest, SHORT) for longest in others)
