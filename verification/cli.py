@@ -49,7 +49,7 @@ app = App(
     help="Verify coated point contact: two independent methods, Hertz and an exact reference in one report.",
     help_epilogue=_epilogue(["coatcheck run", "coatcheck run --help"]),
     version=_version,
-    help_format="plaintext",
+    help_format="markdown",
 )
 groups = {
     "": app,

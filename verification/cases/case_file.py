@@ -380,13 +380,14 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact, pressed: str = "load
     pressed : key that states the load.
     """
     R, slips = problem.radius, likely_slips(problem)
+    first = f"{path}: {slips}; as it stands, " if slips else f"{path}: "
     if not 1e-12 < problem.a_h < 1e3:
-        reason = f"contact radius a_h = {problem.a_h:.3g} m; check units of radius, load, E{slips}"
-        raise CaseError(f"{path}: problem: {reason}")
+        reason = f"contact radius a_h = {problem.a_h:.3g} m; check units of radius, load, E"
+        raise CaseError(f"{first}problem: {reason}")
     a = own_radius(problem)
     if a > R:
         reason = f"gives a contact radius of {a:.3g} m on a sphere of {R:.3g} m; lower it"
-        raise CaseError(f"{path}: {pressed}: {reason}{slips}")
+        raise CaseError(f"{first}{pressed}: {reason}")
     unit = Units.of_contact(problem, a)
     for body in problem.bodies:
         seen = problem.seen_from(body)
@@ -398,7 +399,7 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact, pressed: str = "load
                     f"{unit.shown_length(low, 3)} to {unit.shown_length(high, 3)}"
                 )
                 key = spoken(f"{before(body)}coatings.{i}.thickness")
-                raise CaseError(f"{path}: {key}: {reason}{slips}")
+                raise CaseError(f"{first}{key}: {reason}")
         moduli = [*(E for E, _, _ in seen.coatings), seen.substrate[0]]
         contrast = max(E / min(moduli[i:]) for i, E in enumerate(moduli))
         if contrast > CONTRAST:
@@ -406,7 +407,7 @@ def refuse_unfit_scales(path: Path, problem: CoatedContact, pressed: str = "load
                 f"moduli: a layer is {contrast:.3g} times as stiff as one below it; at most {CONTRAST:g} is "
                 "supported; lower its modulus or raise the one below"
             )
-            raise CaseError(f"{path}: {'ball' if body == BALL else 'problem'}: {reason}{slips}")
+            raise CaseError(f"{first}{'ball' if body == BALL else 'problem'}: {reason}")
 
 
 def _claims(path: Path, checked: _CaseFile, problem: CoatedContact) -> tuple[Claim, ...]:

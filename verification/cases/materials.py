@@ -81,7 +81,7 @@ def meant(name: str, known: dict[str, KnownMaterial]) -> str:
         for called in (one.name, *one.also)
         if words & {*called.casefold().split()}
     ]
-    for key in get_close_matches(plain_name(name), known, n=2):
+    for key in get_close_matches(plain_name(name), [key for key in known if len(key) > 2], n=2):
         near += [called for called in (known[key].name, *known[key].also) if plain_name(called) == key]
     *others, last = dict.fromkeys(near) or ("",)
     return f"; did you mean {', '.join(others)}{' or ' * bool(others)}{last}?" if near else ""

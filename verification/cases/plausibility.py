@@ -100,11 +100,11 @@ def residual_warnings(
 
 
 def likely_slips(problem: CoatedContact) -> str:
-    """ "; KEY = NUMBER looks like UNIT" for what a refusal may come from; "" where nothing looks so."""
+    """ "KEY = NUMBER looks like UNIT" for what a refusal may come from; "" where nothing looks so."""
     slips = [line.split("; ")[-1] for line in (*_numbers(problem), *_thick(problem)) if LIKELY in line]
     if isinstance(problem.load, InSI) and problem.load.unit == "MN":
         slips.insert(0, "load in MN, meganewtons, looks like mN")
-    return "".join(f"; {slip}" for slip in slips[:2])
+    return "; ".join(slips[:2])
 
 
 def _numbers(problem: CoatedContact) -> Iterator[str]:

@@ -107,11 +107,26 @@ def read_toml(raw: bytes, path: Path, model: type[Checked]) -> tuple[str, Checke
     """The text of a TOML file with its content checked against ``model``. Raises CaseError."""
     try:
         text, content = load_toml(raw)
+        _refuse_other_kind(content, model)
         return text, model.model_validate(content)
     except ValidationError as error:
         raise CaseError(f"{path}: {listed_errors(error, model)}") from None
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from None
+
+
+def _refuse_other_kind(content: dict[str, Any], model: type[BaseModel]) -> None:
+    """Raises ValueError where a case is given for a study, or a study for anything else."""
+    asked = "sweep" in model.model_fields
+    if asked and "sweep" not in content:
+        raise ValueError(
+            "the file has no sweep, which a study has and a case has not: try coatcheck solve or coatcheck "
+            "run with it, or change the study that coatcheck study init thickness writes"
+        )
+    if "sweep" in content and not asked:
+        raise ValueError(
+            "the file has a sweep, which is that of a study: try coatcheck study thickness with it"
+        )
 
 
 def listed_errors(error: ValidationError, model: type[BaseModel]) -> str:
@@ -127,12 +142,18 @@ def listed_errors(error: ValidationError, model: type[BaseModel]) -> str:
                 f"{place(*one['loc'])} is an unknown key" + (f"; did you mean {near}?" if near else "")
             )
             explained.add(place(*above, near))
-    told += [
-        f"{place(*one['loc'])} {worded(one)}"
+    rest = [
+        one
         for one in found
         if one["type"] != "extra_forbidden"
         and not (one["type"] == "missing" and place(*one["loc"]) in explained)
     ]
+    # The coatings that a repeat writes out have the same faults.
+    kinds = [repr(([key for key in one["loc"] if isinstance(key, str)], one["input"])) for one in rest]
+    for i, (one, kind) in enumerate(zip(rest, kinds, strict=True)):
+        if kind not in kinds[:i]:
+            again = f" (and {kinds.count(kind) - 1} more of the same)" if kinds.count(kind) > 1 else ""
+            told.append(f"{place(*one['loc'])} {worded(one)}{again}")
     more = len(told) - LISTED
     return "; ".join(told[:LISTED]).replace("?; ", "? ") + (f"; and {more} more" if more > 0 else "")
 

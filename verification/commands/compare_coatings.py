@@ -6,7 +6,6 @@ from importlib.util import find_spec
 from multiprocessing import get_context
 from pathlib import Path
 
-from rich.console import Console
 from rich.markup import escape
 
 from verification.commands.common.shared_options import AsJson, Jobs, Output, Quiet
@@ -43,7 +42,7 @@ def compare_coatings(
 
     jobs, begin = worker_count(jobs), time.perf_counter()
     cases, rows = read_rows(file), []
-    with progress_bar(Console(stderr=True), silent=quiet or as_json) as bar:
+    with progress_bar(silent=quiet or as_json) as bar:
         task = bar.add_task("coatings", total=len(cases))
         with ProcessPoolExecutor(min(jobs, len(cases)), mp_context=get_context("spawn")) as pool:
             for row in pool.map(solved_row, cases):
@@ -53,15 +52,17 @@ def compare_coatings(
     files = ["coatings.csv", "coatings.html", *(["coatings.xlsx"] if find_spec("openpyxl") else [])]
     for name in (one for one in files if not one.endswith(".html")):
         write_cells(output / name, table_rows(rows))
-    heads = [*HEADS, *VERDICT]
     if as_json:
-        print_json([dict(zip(heads, row.cells, strict=True)) for row in rows])
+        print_json([dict(zip((*HEADS, *VERDICT), row.cells, strict=True)) for row in rows])
     elif not quiet:
-        table = named_table(heads[0], *map(escape, heads[2:-1]))
+        stresses, judged = (named_table(*map(escape, ("name", *some))) for some in (HEADS[2:], VERDICT[:-1]))
         for row in rows:
             style = "bold red" if row.message or (row.governing and row.governing[1].utilisation > 1) else ""
-            table.add_row(*(escape(cell) for cell in (row.cells[0], *row.cells[2:-1])), style=style)
-        print_out(table)
+            name, _, *cells = map(escape, row.cells[:-1])
+            stresses.add_row(name, *cells[: len(HEADS) - 2], style=style)
+            if row.governing:
+                judged.add_row(name, *cells[len(HEADS) - 2 :], style=style)
+        print_out(stresses, "", *([judged] if judged.rows else []))
         for row in rows:
             if row.message:
                 print_out(escape(f"{row.name}: {row.message}"))

@@ -33,7 +33,7 @@ from verification.guests.guest_description import FILE, Guest, parse_guest, read
 from verification.guests.guest_protocol import Question
 from verification.guests.pages.guest_page import badge, summary
 from verification.guests.pages.guest_page import page as render
-from verification.judging.outcome import Outcome
+from verification.judging.outcome import Outcome, worst
 from verification.page.number_text import engineering
 from verification.problem.line_profile import coordinate_of
 from verification.problem.quantity import unit_of
@@ -45,7 +45,6 @@ from verification.running.checked_files import locked, write_atomically
 Folder = Annotated[Path | None, Parameter(name=["--output", "-o"])]
 UNLIKE = "08_dlc_chromium_steel"  # two coatings, of another thickness and modulus each
 UNCOATED, COATED = ("01_uncoated_steel", "13_uncoated_sliding"), ("05_ratio_4", "14_ratio_4_sliding", UNLIKE)
-SHOWN = (Outcome.AGREES, Outcome.DISAGREES, Outcome.INCONCLUSIVE, Outcome.NO_RESULT, Outcome.UNSUPPORTED)
 MOST_SHOWN, MOST_REASONS = 5, 12  # wrong answers of a case, reasons
 REPORT = "coatcheck-guest-report/1"
 EXAMPLES, PROTOCOL = (PACKAGE / "guests" / name for name in ("examples", "PROTOCOL.md"))
@@ -296,10 +295,9 @@ def exit_code(found: Examined) -> int:
     outcomes = {v.outcome for r, c, v in found.comparisons if found.guest.known_failure(r.name, c) is None}
     if found.unexpected:
         outcomes.add(Outcome.DISAGREES)
-    for outcome in (Outcome.DISAGREES, Outcome.NO_RESULT, Outcome.INCONCLUSIVE, Outcome.AGREES):
-        if outcome in outcomes:
-            return EXIT[outcome]
-    return EXIT[Outcome.AGREES] if found.known else EXIT[Outcome.NO_RESULT]
+    if found.known and not outcomes & EXIT.keys():
+        return EXIT[Outcome.AGREES]
+    return EXIT[worst(outcomes)]
 
 
 def _chosen(names: Sequence[str]) -> list[Case]:
@@ -325,13 +323,13 @@ def _packed(guest: Guest) -> list[str]:
 
 
 def _print(found: Examined, seconds: float, page: Path) -> None:
-    table = named_table("case", *(o.replace("_", " ").lower() for o in SHOWN), "largest", "s")
+    table = named_table("case", *(o.replace("_", " ").lower() for o in Outcome), "largest", "s")
     for result in found.results:
         counts = outcome_counts([result])
         if counts.keys() == {Outcome.UNSUPPORTED}:
             continue
         worst = max((v.difference for _, v in result.verdicts if v.difference is not None), default=None)
-        cells = [f"[{STYLE[o]}]{counts[o]}[/]" if counts[o] else "." for o in SHOWN]
+        cells = [f"[{STYLE[o]}]{counts[o]}[/]" if counts[o] else "." for o in Outcome]
         taken = f"{result.seconds:.1f}" if result.seconds else "-"
         table.add_row(escape(result.name), *cells, "-" if worst is None else f"{worst:.1e}", taken)
     print_out(table)
@@ -348,7 +346,7 @@ def _print(found: Examined, seconds: float, page: Path) -> None:
 
 def _reasons(found: Examined) -> list[str]:
     """A line for each reason of disagreements that no named slip explains, at most a few."""
-    seen: dict[str, dict[str, int]] = {}
+    seen: dict[str, Counter[str]] = {}
     for result, claim, verdict in found.comparisons:
         if verdict.outcome in (Outcome.AGREES, Outcome.UNSUPPORTED):
             continue
@@ -356,10 +354,9 @@ def _reasons(found: Examined) -> list[str]:
             continue
         # Without its numbers a reason is that of many comparisons.
         what = verdict.reason if verdict.difference is None else f"{verdict.outcome}: {claim.quantity}"
-        cases = seen.setdefault(what, {})
-        cases[result.name] = cases.get(result.name, 0) + 1
+        seen.setdefault(what, Counter())[result.name] += 1
     lines = [
-        f"[bold red]->[/] {escape(one_line(what))} ({sum(cases.values())} comparisons of {', '.join(cases)})"
+        f"[bold red]->[/] {escape(one_line(what))} ({cases.total()} comparisons of {', '.join(cases)})"
         for what, cases in seen.items()
     ]
     more = [f"{len(lines) - MOST_REASONS} more reasons, see the report"] if len(lines) > MOST_REASONS else []

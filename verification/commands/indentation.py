@@ -65,9 +65,9 @@ def indentation(
         plot: Write a figure of curve and fit, FILE.png, FILE.pdf or FILE.svg.
     """
     if plot is not None:
-        from verification.desk.indented.indentation_figure import FORMATS
+        from verification.desk.indented.indentation_figure import write
 
-        require_format(plot, FORMATS, "--plot")
+        require_format(plot, "--plot")
     curve = read_curve(file, _depths(depths))
     kind: str = by or next((one for one in KINDS if set(KINDS[one]) <= curve.values.keys()), "depth")
     if zero and kind != "depth":
@@ -83,15 +83,13 @@ def indentation(
     told = _warnings(case, film, curve, fit)
     print_warnings(told, file.name, strict=False, silent=as_json)
     if plot is not None:
-        from verification.desk.indented.indentation_figure import write
-
         write(fit, sentence(case, film, fit), plot)
     if as_json:
         numbers = ("kind", "E", "low", "high", "rms", "zero", "inputs", "correlation", "radius", "peak")
         content = {name: getattr(fit, name) for name in numbers} | {"rows": fit.x.size, "warnings": told}
         print_json({key: None if value != value else value for key, value in content.items()})
-        return 0
-    _print(case, film, curve, fit)
+    else:
+        _print(case, film, curve, fit)
     return 0
 
 

@@ -2,14 +2,12 @@
 
 import math
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from textwrap import wrap
 from typing import Annotated, Any
 
 from cyclopts import Parameter
-from rich.console import Console
 from rich.markup import escape
 from rich.table import Column, Table
 from threadpoolctl import threadpool_limits
@@ -17,14 +15,15 @@ from threadpoolctl import threadpool_limits
 from verification.cases.case_file import Case, default_cases, parse_case, read_case
 from verification.cases.materials import SHIPPED as SHIPPED_MATERIALS
 from verification.cases.plausibility import refused
-from verification.cases.toml_file import NO_SOURCE, is_number, load_toml
-from verification.cases.unit_numbers import in_si
+from verification.cases.toml_file import NO_SOURCE, load_toml
+from verification.cases.unit_numbers import is_of
 from verification.commands.common.answer_words import planes_text, spread_text, value_text
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.known_folders import require_format
 from verification.commands.common.named_files import SHIPPED, path_of
 from verification.commands.common.shared_options import AsJson, Flag, MaterialsFile, Strict
 from verification.commands.common.terminal import (
+    paragraph,
     print_error,
     print_json,
     print_out,
@@ -33,7 +32,7 @@ from verification.commands.common.terminal import (
 )
 from verification.commands.common.terminal_bar import progress_bar, require_gmsh
 from verification.credibility.model_error import ModelError, model_error
-from verification.desk.case_wording import case_text
+from verification.desk.case_wording import case_text, metres
 from verification.desk.contact_answer import (
     AnswerDifference,
     ContactAnswer,
@@ -55,7 +54,7 @@ from verification.desk.layer_limits import (
     unusual,
     verdict,
 )
-from verification.desk.many_layers import many, worst_of_each
+from verification.desk.many_layers import worst_of_each
 from verification.desk.material_spread import Spread, ranges_of
 from verification.desk.material_spread import spread as material_spread
 from verification.desk.stack_text import body_label, described, outside_verified, stack, units_of
@@ -70,7 +69,6 @@ from verification.running.json_records import encode
 from verification.sources.source_registry import METHODS
 
 METHOD, SECOND = METHODS
-COLUMNS = 79  # of the summary
 
 
 @with_exit_code
@@ -104,7 +102,7 @@ def solve(
     """Solve one problem: size of the contact, largest stresses, their places.
 
     The semi-analytical method answers. The exit code is 1 where --check finds a difference beyond both
-    uncertainties.
+    uncertainties, and 3 where nothing is solved or the finite elements refuse to check the answer shown.
 
     Args:
         file: A case file (.toml) or the name of a shipped case; or give the problem by options.
@@ -136,26 +134,28 @@ def solve(
         force: Solve although a number looks like a slip of its unit.
     """
     begin = time.perf_counter()
-    given = (
-        ball,
-        radii,
-        roller,
-        against,
-        load,
-        approach,
-        coating,
-        substrate,
-        friction,
-        ball_coating,
-        temperature_change,
-    )
-    case = _from_file(file, given) if file is not None else _from_options(*given, materials)
+    given = {
+        "ball": ball,
+        "radii": radii,
+        "roller": roller,
+        "against": against,
+        "load": load,
+        "approach": approach,
+        "coatings": coating,
+        "substrate": substrate,
+        "friction": friction,
+        "on_ball": ball_coating,
+        "temperature_change": temperature_change,
+    }
+    if force and file is not None and is_of("N", file):
+        raise CommandError(f'--force takes no value, it confirms implausible numbers; give --load "{file}"')
+    case = _from_file(file, given) if file is not None else _from_options(given, materials)
     if plot is not None:
-        from verification.desk.answer_figure import FORMATS
+        from verification.desk.answer_figure import write
 
-        require_format(plot, FORMATS, "--plot")
+        require_format(plot, "--plot")
     if csv is not None:
-        require_format(csv, TABLE_FORMATS, "--csv")
+        require_format(csv, "--csv", TABLE_FORMATS)
     sample = _sample(case, thickness_of_sample)
     ranges = ranges_of(case, materials)
     if spread and not ranges:
@@ -171,18 +171,23 @@ def solve(
         require_gmsh()
     with _working("semi-analytical", as_json):
         first = _answer(case, METHOD)
-    coarser: tuple[ContactAnswer, ...] = ()
-    if case.layers:
-        with _working("fewer sub-layers", as_json):
-            coarser = _coarser(case)
+    fewer = [parse_case(case.text.encode(), Path(case.name), over) for over in (2, 4) if case.layers]
+    with _working("fewer sub-layers", as_json or not fewer):
+        coarser = tuple(_answer(one, METHOD) for one in fewer)
     halved = differences(first, coarser[0]) if coarser else ()
     stated = with_slicing(first, coarser)
-    second = None
+    second, refusal = None, ""
     if check:
         if not as_json:
             print_error(f"finite elements: about {usual_seconds(case.problem):.0f} s of processor time")
         with _working("finite elements", as_json):
-            second = _answer(case, SECOND)
+            try:
+                second = _answer(case, SECOND)
+            except CommandError as error:
+                why = str(error).removeprefix(f"{case.name}: {SECOND}: ")
+                refusal = f"Not checked, as the finite elements refuse this contact: {why}"
+        if refusal:
+            print_error(f"{case.name}: {refusal}")
     with _working("loads at which something fails", as_json or not case.limits):
         modes = modes_of(case, first)
     late = [*limit_warnings(case, first, modes), *strain_warnings(case, first)]
@@ -202,8 +207,6 @@ def solve(
     if csv is not None:
         write_cells(csv, answer_rows(case, stated, spreaded))
     if plot is not None:
-        from verification.desk.answer_figure import write
-
         write(case, stated, plot)
     if as_json:
         content = {  # NaN of a place that does not exist as text
@@ -222,16 +225,25 @@ def solve(
             "verdict": verdict(case, modes),
             "modes": [encode(one) | {"utilisation": one.utilisation} for one in modes],
             "check": second and encode(second),
+            "check_refused": refusal,
             "differences": [encode(one) for one in apart],
             "half_of_the_sublayers": [encode(one) for one in halved],
         }
         print_json(content)
     else:
-        _print(case, stated, apart, halved, modes, remarks, spreaded, every=every)
-        _print_model(case, beyond, checked=second is not None)
+        told = (
+            *(f"Remark: {line}." for line in remarks),
+            agreement(stated, apart),
+            refusal and f"{refusal}.",
+        )
+        _print(case, stated, apart, halved, modes, told, spreaded, every=every)
+        hint = "; compared here by --check" if second else "" if check else "; try --check"
+        _print_model(case, beyond, hint, checked=check)
         elements = f", finite elements {second.seconds:.1f} s" if second else ""
         total = time.perf_counter() - begin
         print_out(f"time: semi-analytical {first.seconds:.1f} s{elements}; in all {total:.1f} s")
+    if refusal:
+        return EXIT[Outcome.NO_RESULT]
     agree = all(difference.within for difference in apart)
     return EXIT[Outcome.AGREES if agree else Outcome.DISAGREES]
 
@@ -239,13 +251,13 @@ def solve(
 @contextmanager
 def _working(what: str, silent: bool) -> Iterator[None]:
     """A bar with the time that ``what`` takes."""
-    with progress_bar(Console(stderr=True), silent=silent) as bar:
+    with progress_bar(silent=silent) as bar:
         bar.add_task(what, total=1)
         yield
 
 
-def _from_file(file: str, given: Sequence[Any]) -> Case:
-    if any(one is not None for one in given):
+def _from_file(file: str, given: Mapping[str, Any]) -> Case:
+    if any(one is not None for one in given.values()):
         raise CommandError(f"{file}: give a file or the options of a problem, not both")
     case = read_case(path_of(file, default_cases(), SHIPPED))
     if case.problem.indenter is not None and not case.problem.elliptical:
@@ -255,33 +267,19 @@ def _from_file(file: str, given: Sequence[Any]) -> Case:
     return case
 
 
-def _from_options(
-    ball: str | None,
-    radii: str | None,
-    roller: str | None,
-    against: str | None,
-    load: str | None,
-    approach: str | None,
-    coating: list[str] | None,
-    substrate: str | None,
-    friction: float | None,
-    ball_coating: list[str] | None,
-    temperature_change: float | None,
-    materials: Path,
-) -> Case:
+def _from_options(given: Mapping[str, Any], materials: Path) -> Case:
     needed = {
-        "--ball, --radii or --roller": (ball, radii, roller),
-        "--load or --approach": (load, approach),
-        "--substrate": (substrate,),
+        "--ball, --radii or --roller": ("ball", "radii", "roller"),
+        "--load or --approach": ("load", "approach"),
+        "--substrate": ("substrate",),
     }
-    missing = [options for options, values in needed.items() if not any(values)]
-    if missing or substrate is None:
+    missing = [options for options, keys in needed.items() if not any(given[key] for key in keys)]
+    if missing:
         asked = ", ".join([*missing[:-1], f"and {missing[-1]}" if missing[1:] else missing[-1]])
         raise CommandError(f"give {asked}, or a case file alone; see coatcheck solve --help")
+    stated = {key: one for key, one in given.items() if one is not None}
     try:
-        layers = coating or [], friction or 0.0, ball_coating or []
-        words = (ball, load, substrate, *layers, approach, materials, temperature_change)
-        text = case_text(*words, radii, against, roller)
+        text = case_text(**{"ball": None, "load": None, **stated}, materials=materials)
     except ValueError as error:
         raise CommandError(str(error)) from None
     return parse_case(text.encode("utf-8", errors="replace"), Path("options"))
@@ -291,10 +289,7 @@ def _sample(case: Case, thickness: str | None) -> float | None:
     """The thickness of the sample [m]."""
     if thickness is None:
         return None
-    try:
-        value = float(thickness) if is_number(thickness) else in_si(thickness, "m")
-    except ValueError as error:
-        raise CommandError(f"--thickness-of-sample: {error}, not {thickness!r}") from None
+    value = metres("--thickness-of-sample", thickness)
     coated = sum(h for *_, h in case.problem.coatings)
     if not coated < value < math.inf:
         shown = prefixed(coated, "m") if coated else "0"
@@ -325,12 +320,6 @@ def _limits(case: Case, modes: Sequence[LayerMode]) -> Table:
     return table
 
 
-def _coarser(case: Case) -> tuple[ContactAnswer, ...]:
-    """Answers with half and a quarter of the sub-layers of graded coatings; () without any."""
-    overs = (2, 4) if case.layers else ()
-    return tuple(_answer(parse_case(case.text.encode(), Path(case.name), over), METHOD) for over in overs)
-
-
 def _table(words: Sequence[str], figures: Sequence[str]) -> Table:
     """A table with columns of ``words`` and of right-aligned ``figures``."""
     right = (Column(head, justify="right", no_wrap=True) for head in figures)
@@ -343,7 +332,7 @@ def _print(
     apart: Sequence[AnswerDifference],
     halved: Sequence[AnswerDifference],
     modes: tuple[LayerMode, ...],
-    remarks: Sequence[str],
+    told: Sequence[str],
     spread: Spread | None,
     *,
     every: bool,
@@ -353,12 +342,13 @@ def _print(
     units = units_of(case.problem)
     decimals = max(2, 3 - math.floor(math.log10(first.numbers["contact_radius"][0] / units.metre)))
 
-    def checked(key: tuple[str, ...], unit: float) -> list[str]:
+    def beside(key: tuple[str, ...], unit: float) -> list[str]:
         shown = {head: f"{found[key].value / unit:+.1e}" for head, found in more.items()}
         beyond = apart and not more["elements − this"][key].within
         return [f"[bold red]{s}[/]" if beyond and h.startswith("elements") else s for h, s in shown.items()]
 
-    shown_of = "" if every or not many(case) else "the worst of each material and interface; all with --all"
+    extremes = first.extremes if every else worst_of_each(case, first.extremes)
+    fewer = len(extremes) < len(first.extremes)
     between = ("lowest", "highest") if spread else ()
     numbers = _table(("contact", "unit"), ("value", "±", *more, *between))
     axes = "xyz" if case.problem.elliptical else "xz"
@@ -370,9 +360,9 @@ def _print(
         unit, scale = (units.stress, units.pascal) if si == "Pa" else (units.length, units.metre)
         cells = [value_text(value / scale, stated and stated / scale), spread_text(stated, scale)]
         ends = [f"{end / scale:.4g}" for end in spread.ends[name,]] if spread else []
-        numbers.add_row(symbol, unit, *cells, *checked((name,), scale), *ends)
+        numbers.add_row(symbol, unit, *cells, *beside((name,), scale), *ends)
     body = FLAT
-    for at in first.extremes if every else worst_of_each(case, first.extremes):
+    for at in extremes:
         if at.body != body:
             table.add_row("")
             body = at.body
@@ -383,20 +373,19 @@ def _print(
         shown = [value_text(at.value / units.pascal, at.uncertainty / units.pascal)]
         shown.append(spread_text(at.uncertainty, units.pascal))
         ends = [f"{end / units.pascal:.4g}" for end in spread.ends[key]] if spread else []
-        table.add_row(at.quantity, where, *shown, *places, *ends, *checked(key, units.pascal))
+        table.add_row(at.quantity, where, *shown, *places, *ends, *beside(key, units.pascal))
     said = (
         summary(case.problem, first, case.names),
         verdict(case, modes),
         spread.sentence(case, modes) if spread else "",
-        *(f"Remark: {line}." for line in remarks),
-        agreement(first, tuple(apart)),
+        *told,
     )
     print_out(
         f"[bold]{escape(case.title)}[/]",
         escape(stack(case)),
-        *(escape(line) for line in wrap(f"source: {case.source}", COLUMNS) if case.source != NO_SOURCE),
+        *(escape(line) for line in paragraph(f"source: {case.source}") if case.source != NO_SOURCE),
         "",
-        *(escape(line) for text in said for line in wrap(text, COLUMNS)),
+        *(escape(line) for text in said for line in paragraph(text)),
         "",
         *(escape(line) for line in described(case, every=every)),
         "",
@@ -405,7 +394,7 @@ def _print(
         table,
         "",
         f"tension positive, in the plane{planes_text(case.problem)}, z into each body",
-        *filter(None, [shown_of]),
+        *(["the worst of each material and interface; all with --all"] if fewer else []),
     )
     if modes:
         print_out("", _limits(case, modes if every else worst_of_each(case, modes)), "")
@@ -413,8 +402,9 @@ def _print(
         print_out("± contains the slicing: at least the change by half the sub-layers, in the plane thrice")
 
 
-def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:
+def _print_model(case: Case, beyond: ModelError, hint: str, *, checked: bool) -> None:
     """Prints what the answer is good for: error of the model, range of the verification."""
+    given = load_toml(case.text.encode())[1]
     if beyond.parts:
         head = "the model itself is good to"
         print_out(*map(escape, (head, *(f"  {part}" for part in beyond.parts), *beyond.notes)))
@@ -422,21 +412,12 @@ def _print_model(case: Case, beyond: ModelError, *, checked: bool) -> None:
         reasons = ", ".join(dict.fromkeys(reason for _, reason in beyond.missing))
         print_out(escape(f"{beyond.message()}: {reasons}"))
     if outside := outside_verified(case):
-        hint = "compared here by --check" if checked else "try --check"
-        print_out(escape(f"beyond the range in which both methods were compared: {outside}; {hint}"))
-    if unused := _unused(case, checked=checked):
+        print_out(escape(f"beyond the range in which both methods were compared: {outside}{hint}"))
+    used = (METHOD, SECOND) if checked else (METHOD,)
+    unused = [key for key in ("claim", "resolve", *METHODS) if key in given and key not in used]
+    if unused:
         print_out(escape(f"for coatcheck run: {', '.join(unused)}"))
     if case.residual:
         print_out(
             "with residual stress; the shear of an interface near a free edge of its coating is not covered"
         )
-
-
-def _unused(case: Case, *, checked: bool) -> list[str]:
-    """The tables of its file that this answer does not use."""
-    given = load_toml(case.text.encode())[1]
-    return [
-        key
-        for key in ("claim", "resolve", METHODS[1])
-        if key in given and not (checked and key == METHODS[1])
-    ]

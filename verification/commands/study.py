@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 from cyclopts import Parameter
-from rich.console import Console
 from rich.markup import escape
 from rich.progress import TaskID
 
@@ -114,7 +113,9 @@ def _study(plan: str, options: Options, *, loads: bool) -> int:
     jobs, shipped = worker_count(options.jobs), shipped_studies()
     chosen = read_study_file(path_of(plan, shipped, f"study ({', '.join(shipped)})"))
     if loads != (chosen.loads is not None):
-        what = "sweeps the load; use coatcheck study load" if chosen.loads else "has no sweep.load"
+        what = "sweeps the load; use coatcheck study load"
+        if loads:
+            what = "has no sweep.load; use coatcheck study thickness, or coatcheck study init load"
         raise CommandError(f"{plan}: this study {what}")
     if loads and chosen.criteria.strength is None:
         raise CommandError(f"{plan}: criteria.strength is missing; a critical load needs strengths")
@@ -207,7 +208,6 @@ def _forecast(chosen: Study, output: Path, jobs: int) -> str:
 @contextmanager
 def _bars(silent: bool) -> Iterator[tuple[Callable[[str, int, int], None], Callable[[str], None]]]:
     """Progress bars, unless ``silent``: points of each source, from the first second; then the figures."""
-    bar = progress_bar(Console(stderr=True), silent=silent)
     tasks: dict[str, TaskID] = {}
 
     def report(source: str, done: int, total: int) -> None:
@@ -220,5 +220,5 @@ def _bars(silent: bool) -> Iterator[tuple[Callable[[str, int, int], None], Calla
             tasks["drawing"] = bar.add_task("", total=FIGURE_GROUPS)
         bar.update(tasks["drawing"], advance=1, description=f"drawing: {name}")
 
-    with bar:
+    with progress_bar(silent=silent) as bar:
         yield report, drawing

@@ -11,7 +11,6 @@ from threadpoolctl import threadpool_limits
 from semianalytic import NotConverged
 from verification.cases.case_file import Case, parse_case
 from verification.cases.materials import SHIPPED as SHIPPED_MATERIALS
-from verification.cases.unit_numbers import in_si
 from verification.commands.common.answer_words import spread_text, value_text
 from verification.commands.common.command_error import CommandError, no_result
 from verification.commands.common.known_folders import require_format
@@ -23,7 +22,7 @@ from verification.commands.common.terminal import (
     print_warnings,
     with_exit_code,
 )
-from verification.desk.case_wording import case_text
+from verification.desk.case_wording import case_text, metres
 from verification.desk.layer_limits import layer_modes, strengths_of, verdict
 from verification.desk.measured.surface_contact import SurfaceContact, pressed
 from verification.desk.measured.surface_map import SurfaceMap, read_map
@@ -69,13 +68,10 @@ def surface(
         plot: Write heights and pressure as FILE.png, FILE.pdf or FILE.svg.
     """
     if plot is not None:
-        from verification.desk.measured.surface_figure import FORMATS
+        from verification.desk.measured.surface_figure import write
 
-        require_format(plot, FORMATS, "--plot")
-    try:
-        length = None if size is None else in_si(size, "m")
-    except ValueError as error:
-        raise CommandError(f'--size "{size}": {error}') from None
+        require_format(plot, "--plot")
+    length = None if size is None else metres("--size", size)
     found = read_map(file, unit, length, turned=turn)
     case, radius = _problem(found, ball, load, substrate, coating or [], friction, materials)
     found = found if radius is None else found.on_ball(radius)
@@ -98,16 +94,16 @@ def surface(
         raise no_result(f"{file}: {message_of(error)}") from None
     told = _warnings(found, contact)
     print_warnings(told, file.name, strict=False, silent=as_json)
-    said = [*_orientation(found), "", sentence(found, case, contact), *_verdict(case, contact)]
+    modes = layer_modes(case.problem, contact.answer, strengths_of(case.limits), loads=False)
+    judged = [*filter(None, [verdict(case, modes)]), *(f"Remark: {line}." for line in case.remarks)]
+    said = [*_orientation(found), "", sentence(found, case, contact), *judged]
     if plot is not None:
-        from verification.desk.measured.surface_figure import write
-
         write(found, contact, f"{file.name}: {stack(case)}", units_of(case.problem), plot)
     if as_json:
         area = dict(zip(("value", "uncertainty"), contact.area, strict=True))
         print_json({"said": said, "warnings": told, "real_area": area, "answer": encode(contact.answer)})
-        return 0
-    _print(case, found, contact, said)
+    else:
+        _print(case, contact, said)
     return 0
 
 
@@ -184,12 +180,6 @@ def sentence(found: SurfaceMap, case: Case, contact: SurfaceContact) -> str:
     )
 
 
-def _verdict(case: Case, contact: SurfaceContact) -> list[str]:
-    modes = layer_modes(case.problem, contact.answer, strengths_of(case.limits), loads=False)
-    said = [verdict(case, modes)] if modes else []
-    return [*said, *(f"Remark: {line}." for line in case.remarks)]
-
-
 def _warnings(found: SurfaceMap, contact: SurfaceContact) -> list[str]:
     patches, side = contact.solution.diagnostics.patches, contact.solution.diagnostics.patches_per_side
     told = []
@@ -206,7 +196,7 @@ def _warnings(found: SurfaceMap, contact: SurfaceContact) -> list[str]:
     return told
 
 
-def _print(case: Case, found: SurfaceMap, contact: SurfaceContact, said: list[str]) -> None:
+def _print(case: Case, contact: SurfaceContact, said: list[str]) -> None:
     units = units_of(case.problem)
     table = named_table(
         "largest", "place", units.stress, f"± {units.stress}", *(f"{c} {units.length}" for c in "xyz")

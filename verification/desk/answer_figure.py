@@ -1,6 +1,5 @@
 """Figure of one answer: stresses along x, on the surface, at each interface."""
 
-import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from textwrap import wrap
@@ -15,19 +14,18 @@ from verification.cases.case_file import Case
 from verification.desk.answer_stresses import StressCourse
 from verification.desk.contact_answer import ContactAnswer, Names, with_name
 from verification.desk.stack_text import conditions, stack, units_of
+from verification.page.figures import save
 from verification.problem.display_units import Units
 from verification.problem.point_answers import FLAT
 from verification.problem.quantity import first_principal, von_mises
-from verification.running.checked_files import write_atomically
 from verification.sources.source_registry import METHODS, solvers
 from verification.study.largest_stresses import Measure
 from verification.study.pages.study_figures import COLOURS
 from verification.study.stress_section import StressSection, section
 
 WIDTH, BELOW, MOST = 2.0, 0.5, 7  # extents of the section over a; courses of a panel
-FORMATS = (".png", ".pdf", ".svg")
 STYLES = ("-", "--", "-.", ":", (0, (6, 1)), (0, (3, 1, 1, 1, 1, 1)), (0, (1, 3)))
-_SETTINGS: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "savefig.facecolor": "white"}
+_SETTINGS: Any = {"font.size": 9, "axes.grid": True, "grid.alpha": 0.3}
 
 
 def write(case: Case, answer: ContactAnswer, path: Path) -> None:
@@ -35,12 +33,9 @@ def write(case: Case, answer: ContactAnswer, path: Path) -> None:
 
     Solved again for its section by the semi-analytical method. Raises what it raises, and StoreError.
     """
-    content, units = io.BytesIO(), units_of(case.problem)
     title = f"{stack(case)}\n{conditions(case.problem)}"
     with mpl.rc_context(_SETTINGS):
-        drawn = _drawn(answer, title, _seen(case), case.names, units)
-        drawn.savefig(content, format=path.suffix.lower()[1:], dpi=200)
-    write_atomically(path, content.getvalue())
+        save(_drawn(answer, title, _seen(case), case.names, units_of(case.problem)), path)
 
 
 def _seen(case: Case) -> tuple[StressSection, StressSection]:

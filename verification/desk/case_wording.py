@@ -12,11 +12,12 @@ import json
 import re
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import permutations
 from pathlib import Path
 
 from verification.cases.materials import SHIPPED, meant, plain_name, read_materials
-from verification.cases.toml_file import is_number
-from verification.cases.unit_numbers import NUMBER, in_si
+from verification.cases.toml_file import CaseError, is_number
+from verification.cases.unit_numbers import NUMBER, in_si, is_of
 
 _D, _R = r"d|D|dia\.?|diam\.?|diameter|Ø|ø|⌀", r"r|R|radius"
 _VALUE = rf"{NUMBER}\s*(?:[^\W\d_]\S*)?"
@@ -25,6 +26,10 @@ _SIZED = re.compile(rf"({_D}|{_R})?\s*=?\s*({_VALUE}?)(?:\s+({_D}|{_R}))?")
 _NAMED = re.compile(rf"(.*?\S)[\s:]+({_SIZE})")
 # A name does not begin with a number, but for that of a steel, 1.3505; nor does it hold a size.
 _NO_NAME = re.compile(rf"(?!1\.\d{{4}}\b)[+-]?[\d.,]+(?:\s|$)|.*\b{NUMBER} ?(?:[numk]?m|µm|[kMGT]?Pa)\b")
+_AFTER = re.compile(rf"({NUMBER} ?(?:[num]?m|µm))\s+(\S.*)")
+_BETWEEN = re.compile(r"\s/\s|(?<=\dm)/|(?<=[ \d][nuµm]m)/|(?<=\.\d)/|(?<=\.\d\d)/")
+_NUMERIC = re.compile(rf"(?:(?:{_D}|{_R})\s*=\s*)?{NUMBER}\s*(?:[numkµMGT]?(?:m|Pa))?(?!\w)")
+_KEY = re.compile(r"(?:E|nu|h|t|thickness)\s*=\s*(?=[\d.])")
 _REPEATED = re.compile(r"(\d{1,3})\s*[x*×]\s*\((.*)\)", re.DOTALL)
 _GRADED = re.compile(rf"({NUMBER})\s*([^\W\d_]*)\s+to\s+({NUMBER})\s*([^\W\d_]*)")
 SUBLAYERS = 16  # of a graded coating
@@ -40,6 +45,7 @@ _KEYS = {
     "adhesion": "adhesion",
     "hardness": "hardness",
     "expansion": "expansion",
+    "alpha": "expansion",
 }
 _STATED = re.compile(
     rf"({'|'.join(sorted(_KEYS, key=len, reverse=True))})\s*[=:]?\s*([-+\d.].*)", re.IGNORECASE
@@ -50,8 +56,8 @@ SOLID = "--ball with --radii or --roller"  # the solid alone
 FORMS = {
     SOLID: ("E", "nu", "100Cr6 210 GPa, 0.3"),
     "--ball": ("radius", "E", "nu", "100Cr6 d = 6 mm, 210 GPa, 0.3"),
-    "--coating": ("thickness", "E", "nu", "DLC 3 um, 450 GPa, 0.22"),
-    "--ball-coating": ("thickness", "E", "nu", "DLC 3 um, 450 GPa, 0.22"),
+    "--coating": ("thickness", "E", "nu", "TiN 3 um, 450 GPa, 0.25"),
+    "--ball-coating": ("thickness", "E", "nu", "TiN 3 um, 450 GPa, 0.25"),
     "--substrate": ("E", "nu", "100Cr6 210 GPa, 0.3"),
 }
 
@@ -82,6 +88,10 @@ def case_text(
     solid = partial(_solid, materials=materials, used=used)
     coated, elastic = ", ".join(_layers("--ball-coating", text, solid) for text in on_ball), ""
     sized = None
+    named, size = _named(ball.strip()) if ball is not None else ("", "")
+    if against is not None and radii is roller is None and re.fullmatch(_SIZE, size):
+        ball, bend = named, _radius(f'--ball "{ball}"', *_size(size))
+        radii = f"{bend}, {bend}"
     if radii is not None and roller is not None:
         raise ValueError(f'--roller "{roller}", --radii "{radii}": both are given; give one')
     if radii is not None or roller is not None:
@@ -89,7 +99,7 @@ def case_text(
         bends += [("against", _bends("--against", against))] if against is not None else []
         entries = ", ".join(f"{key} = [{', '.join(map(_toml, words))}]" for key, words in bends)
         sized = f'indenter = {{ shape = "ellipsoid", {entries} }}'
-        if ball is not None:
+        if ball:
             called, (E, nu) = solid(SOLID, ball)
             elastic = f"ball = {{ {called}E = {_toml(E)}, nu = {_toml(nu)}, coatings = [{coated}] }}\n"
         elif on_ball:
@@ -98,7 +108,9 @@ def case_text(
         raise ValueError(f'--against "{against}": give the radii of the other body too, --radii or --roller')
     elif ball is None:
         raise ValueError("give --ball, --radii or --roller")
-    elif "," in ball or on_ball or _named(ball.strip())[0]:
+    elif plain_name(ball) in read_materials(materials) or not re.search(r"\d", ball):
+        raise ValueError(f'--ball "{ball}": give its size too, such as "100Cr6 d = 6 mm"')
+    elif "," in ball or on_ball or named:
         called, (size, *words) = solid("--ball", ball)
         E, nu = map(_toml, words)
         elastic = f"ball = {{ {called}E = {E}, nu = {nu}, coatings = [{coated}] }}\n"
@@ -147,19 +159,33 @@ def _bends(option: str, text: str, needs: str = 'R_x, R_y, 2 parts, such as "3.8
 
 def _crowned(text: str) -> list[str]:
     """Both radii of curvature of a roller, whose size may be a diameter: "d = 10 mm, crown 2 m"."""
-    size, crown = _bends("--roller", text, 'R, crown, 2 parts, such as "R = 5 mm, crown 2 m"')
-    key, word = _size(size)
-    if key == "diameter":
-        try:
-            word = repr((float(word) if is_number(word) else in_si(word, "m")) / 2)
-        except ValueError as error:
-            raise ValueError(f'--roller "{text}": {error}, not {word!r}') from None
-    return [word, re.sub(rf"^crown\s*(?:{_R})?\b\s*=?\s*", "", crown)]
+    form = 'R, crown, 2 parts, such as "R = 5 mm, crown 2 m"; a cylinder without a crown is not solved'
+    size, crown = _bends("--roller", text, form)
+    if _named(size)[0] or re.match(r"[lL]\s*=|length", crown):
+        raise ValueError(f'--roller "{text}": give {form}; its solid is --ball, such as --ball 100Cr6')
+    return [_radius(f'--roller "{text}"', *_size(size)), re.sub(rf"^crown\s*(?:{_R})?\b\s*=?\s*", "", crown)]
+
+
+def _radius(given: str, key: str, word: str) -> str:
+    """The radius of a size, see ``_size``; ``given`` names it where it is no number with a unit."""
+    return word if key == "radius" else repr(metres(given, word) / 2)
+
+
+def metres(given: str, word: str) -> float:
+    """A length in words, bare in metres. Raises CaseError, which begins with what was ``given``."""
+    try:
+        return float(word) if is_number(word) else in_si(word, "m")
+    except ValueError as error:
+        raise CaseError(f"{given}: {error}, not {word!r}") from None
 
 
 def _named(word: str) -> tuple[str, str]:
-    """A name that comes before the last number of a word, with that number; "" where there is none."""
-    found = None if re.fullmatch(_SIZE, word) else _NAMED.fullmatch(word)
+    """A name beside a number, "DLC 2 um" or "2 um DLC", with that number; "" where there is none."""
+    if re.fullmatch(_SIZE, word):
+        return "", word
+    if (found := _AFTER.fullmatch(word)) and not _NO_NAME.match(found[2]):
+        return found[2], found[1]
+    found = _NAMED.fullmatch(word)
     name = found[1].rstrip(" :") if found else ""
     return (name, found[2]) if found and not _NO_NAME.match(name) else ("", word)
 
@@ -169,7 +195,7 @@ def _layers(option: str, text: str, solid: Solid) -> str:
     found = _REPEATED.fullmatch(text.strip())
     if found is None:
         return _coating(option, text, solid)
-    parts = re.split(r"\s/\s", found[2])
+    parts = _BETWEEN.split(found[2])
     try:
         stack = ", ".join(_coating(option, part, solid) for part in parts)
     except ValueError as error:
@@ -179,17 +205,27 @@ def _layers(option: str, text: str, solid: Solid) -> str:
 
 
 def _coating(option: str, text: str, solid: Solid) -> str:
-    called, (thickness, E, nu) = solid(option, text)
-    graded = _GRADED.fullmatch(E)
-    thickness, E, nu = map(_toml, (thickness, E, nu))
+    called, words = solid(option, text)
+    orders = [order for order in permutations(words) if _fits(*order)]
+    if orders and not _fits(*words):
+        right = max(orders, key=lambda order: float(order[2]))
+        raise ValueError(f'{option} "{text}": the order is thickness, E, nu, "{", ".join(right)}"')
+    graded = _GRADED.fullmatch(words[1])
+    thickness, E, nu = map(_toml, words)
     if graded:
         ends = (
             _toml(f"{number} {unit or graded[4]}")
             for number, unit in (graded.groups()[:2], graded.groups()[2:])
         )
-        E = 'course = "linear", top = {}, base = {}'.format(*ends)
-        E = f"{{ {E} }}, layers = {SUBLAYERS}"
+        E = '{{ course = "linear", top = {}, base = {} }}, layers = {}'.format(*ends, SUBLAYERS)
     return f"{{ {called}thickness = {thickness}, E = {E}, nu = {nu} }}"
+
+
+def _fits(thickness: str, E: str, nu: str) -> bool:
+    """Whether words can be a thickness, a modulus and a Poisson's ratio, in this order."""
+    h, modulus = (float(word) if is_number(word) else word for word in (thickness, E))
+    elastic = bool(_GRADED.fullmatch(E)) or is_of("Pa", modulus)
+    return is_of("m", h) and elastic and is_number(nu) and -1 < float(nu) <= 0.5
 
 
 def _solid(option: str, text: str, materials: Path, used: dict[str, str]) -> tuple[str, list[str]]:
@@ -198,13 +234,14 @@ def _solid(option: str, text: str, materials: Path, used: dict[str, str]) -> tup
     used : what was taken from the file of ``materials``, in words.
     """
     *names, example = FORMS[option]
-    every = [word.strip() for word in text.split(",")]
+    every = [_KEY.sub("", word.strip()) for word in text.split(",")]
     more = [found for word in every[1:] if (found := _STATED.fullmatch(word))]
     words = [word for word in every if not _STATED.fullmatch(word)] or every
     stated = "".join(f"{_KEYS[found[1].casefold()]} = {_toml(found[2])}, " for found in more)
     name, words[0] = _named(words[0])
-    if not name and len(words) == len(names) + 1 and not re.match(NUMBER + r"(?!\w)", words[0]):
-        name = words.pop(0).rstrip(":")
+    if not name and len(words) in (len(names) + 1, 2):
+        i = next((i for i, word in enumerate(words) if not _NUMERIC.match(word)), -1)
+        name = words.pop(i).rstrip(":") if i in range(len(names) - 1) else ""
     unknown = ""
     if len(words) == 1 and (name or len(names) == 2):
         name = f"{name} {words.pop()}".strip() if len(names) == 2 else name

@@ -34,6 +34,7 @@ MOST_ROWS = 1000
 _HEAD = re.compile(r"(ball|substrate|coating ?\d*|name|load|friction)(?: (.*?))?(?: ?[\[(](.*)[\])])?")
 _NUMBERS = {"radius": "", "diameter": "d = ", "thickness": "", "E": "", "nu": ""}  # that come first, in order
 _STATED = ("strength", "residual stress", "yield strength", "adhesion", "hardness", "expansion")
+TYPICAL = "typical values: "  # before the sources of materials given by name
 FAILS = tuple(dict.fromkeys(does for does, _, _ in MODES.values()))
 HUES = dict(zip(FAILS, ("#0072B2", "#D55E00", "#009E73", "#CC79A7"), strict=True))
 HEADS = ("name", "stack", "p0 [MPa]", "a [um]", "sigma_1 coatings [MPa]", "von Mises [MPa]", "shear [MPa]")
@@ -189,8 +190,9 @@ def table_page(rows: Sequence[CoatingRow], cases: Sequence[Case], title: str) ->
         for one, case in zip(rows, cases, strict=True)
     ]
     sections.append(Section("each", "Each coating", parts))
-    sources = sorted({case.source for case in cases if case.source.startswith("typical")})
-    facts = [("table", title), ("not solved", str(failed)), *(("source", one) for one in sources)]
+    typical = [case.source for case in cases if case.source.startswith(TYPICAL)]
+    known = sorted({one for source in typical for one in source.removeprefix(TYPICAL).split("; ")})
+    facts = [("table", title), ("not solved", str(failed)), *((TYPICAL.strip(": "), one) for one in known)]
     return render_sections("coatcheck compare-coatings", headline, facts, sections)
 
 

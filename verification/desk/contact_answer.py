@@ -139,6 +139,7 @@ def usual_seconds(problem: CoatedContact) -> float:
 
 
 ON_AXIS = 5e-3  # of a place from the axis, over a_h
+DOUBTFUL = 0.05  # uncertainty over its stress that a sentence does not leave out
 
 
 def summary(problem: CoatedContact, found: ContactAnswer, names: Names) -> str:
@@ -153,7 +154,9 @@ def summary(problem: CoatedContact, found: ContactAnswer, names: Names) -> str:
     bases, interfaces = _ranked(found, "sigma_xx", "base of"), _ranked(found, "|sigma_xz|")
 
     def stress(at: Extreme) -> str:
-        return f"{_three_digits(at.value / units.pascal)} {units.stress}"
+        value, uncertainty = at.value / units.pascal, at.uncertainty / units.pascal
+        doubt = f" ± {float(f'{uncertainty:.1g}'):g}" if uncertainty > DOUBTFUL * abs(value) else ""
+        return f"{_three_digits(value)}{doubt} {units.stress}"
 
     def name(at: Extreme) -> str:
         where = "the substrate" if at.where == "substrate" else with_name(at.body, at.where, names)

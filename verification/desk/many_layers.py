@@ -12,11 +12,6 @@ MOST = 6  # coatings of a body, each of which is shown by itself
 At = TypeVar("At", Extreme, LayerMode)
 
 
-def many(case: Case) -> bool:
-    """Whether a body has more coatings than are shown by themselves."""
-    return any(len(_materials(case, body)) > MOST for body in case.problem.bodies)
-
-
 def worst_of_each(case: Case, found: Iterable[At]) -> tuple[At, ...]:
     """The largest of each quantity by material, and of the interfaces; everything where layers are few."""
     worst: dict[tuple[str, ...], At] = {}

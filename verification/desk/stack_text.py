@@ -6,8 +6,11 @@ from verification.cases.case_file import Case
 from verification.cases.drawn_ranges import (
     FILM_RATIO,
     FILM_THICKNESS,
+    FRICTION,
+    MOST_COATINGS,
     MOST_FILMS,
     OVER_INTERLAYER,
+    POISSON,
     RATIO,
     THICKNESS,
 )
@@ -75,7 +78,7 @@ def described(case: Case, *, every: bool = True) -> list[str]:
             E, nu, _ = layers[0]
             given = _course(case, body, i - 1)
             solid = f"E = {given}, as {n} sub-layers, nu = {nu:g}" if given else _solid(E, nu)
-            ends = _range(stress[0] / units.pascal, stress[-1] / units.pascal)
+            ends = " to ".join(dict.fromkeys(f"{one / units.pascal:.4g}" for one in (stress[0], stress[-1])))
             more = f", residual stress {ends} {units.stress}" if any(stress) else ""
             thickness = _thickness(layers, names[i - 1] if names else "", units)
             text = f"{thickness}, {solid}{more}"
@@ -118,11 +121,23 @@ def outside_verified(case: Case) -> str:
     counts too.
     """
     problem, found = case.problem, []
+    if problem.friction > FRICTION[1]:
+        found.append((f"friction f = {problem.friction:g}", f"outside {_between(FRICTION)}"))
     a = own_radius(problem)
+    # a film as thin as those of the random problems of films, alone or below another
+    thin = any(h < THICKNESS[0] * problem.a_h for *_, h in problem.coatings)
+    films = thin and len(problem.coatings) <= MOST_FILMS and not (problem.ball and problem.ball[2])
     for body in problem.bodies:
         seen, of = problem.seen_from(body), "" if body == FLAT else f" on the {body}"
-        thickness, ratio = (FILMS, FILM_RATIO) if _films(problem) else (THICKNESS, RATIO)
-        for i, layers in enumerate(_coatings(seen, case.layers.get(body)), start=1):
+        thickness, ratio = (FILMS, FILM_RATIO) if films else (THICKNESS, RATIO)
+        coatings = _coatings(seen, case.layers.get(body))
+        if len(coatings) > MOST_COATINGS:
+            found.append((f"{len(coatings)} coatings{of}", f"outside {_between((0, MOST_COATINGS))}"))
+        solids = [(f"coating {i}{of}", layers[0][1]) for i, layers in enumerate(coatings, start=1)]
+        for name, nu in (*solids, ("substrate" if body == FLAT else body, seen.substrate[1])):
+            if not POISSON[0] <= nu <= POISSON[1]:
+                found.append((name, f"nu = {nu:g}, outside {_between(POISSON)}"))
+        for i, layers in enumerate(coatings, start=1):
             h = sum(h for *_, h in layers)
             low, high = thickness[0] * (1 - 1e-3), thickness[1] * (1 + 1e-3)
             if not any(low <= h / radius <= high for radius in (a, problem.a_h)):
@@ -138,12 +153,6 @@ def outside_verified(case: Case) -> str:
         f"{names[0]}{f' and {len(names) - 1} more' * (len(names) > 1)}, {told}"
         for told, names in alike.items()
     )
-
-
-def _films(problem: CoatedContact) -> bool:
-    """Whether there is a film as thin as those of the random problems of films, alone or below another."""
-    thin = any(h < THICKNESS[0] * problem.a_h for *_, h in problem.coatings)
-    return thin and len(problem.coatings) <= MOST_FILMS and not (problem.ball and problem.ball[2])
 
 
 def _between(bounds: tuple[float, float]) -> str:
@@ -170,7 +179,3 @@ def _course(case: Case, body: str, coating: int) -> str:
 
 def _solid(E: float, nu: float) -> str:
     return f"E = {prefixed(E, 'Pa')}, nu = {nu:g}"
-
-
-def _range(low: float, high: float) -> str:
-    return f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}"

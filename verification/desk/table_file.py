@@ -5,7 +5,6 @@ import io
 from collections.abc import Sequence
 from itertools import islice
 from pathlib import Path
-from typing import Any
 from zipfile import BadZipFile, ZipFile
 
 from verification.cases.case_file import Case
@@ -52,15 +51,14 @@ def _of_workbook(path: Path, raw: bytes) -> list[list[str]]:
             raise CaseError(f"{path}: unpacks to more than {MOST_UNPACKED} bytes; leave out what is no table")
         sheet = load_workbook(io.BytesIO(raw), read_only=True, data_only=True).worksheets[0]
         rows = islice(sheet.iter_rows(values_only=True), MOST_ROWS)
-        return [["" if cell is None else _text(cell) for cell in row[:MOST_COLUMNS]] for row in rows]
+        return [
+            ["" if one is None else f"{one:.15g}" if isinstance(one, float) else str(one) for one in row]
+            for row in (row[:MOST_COLUMNS] for row in rows)
+        ]
     except (BadZipFile, KeyError, IndexError, ValueError, TypeError, AttributeError) as error:
         if isinstance(error, CaseError):
             raise
         raise CaseError(f"{path}: not an XLSX workbook ({error}); save it again, or as CSV") from None
-
-
-def _text(cell: Any) -> str:
-    return f"{cell:.15g}" if isinstance(cell, float) else str(cell)
 
 
 def answer_rows(case: Case, found: ContactAnswer, spread: Spread | None = None) -> list[list[Cell]]:

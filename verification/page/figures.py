@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from importlib.util import find_spec
 from math import ceil, floor, isfinite, log10
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from zlib import crc32
 
@@ -19,6 +20,7 @@ from markupsafe import Markup, escape
 
 from verification.page.symbol_text import drawn, unicode
 from verification.problem.array_types import Array
+from verification.running.checked_files import write_atomically
 from verification.sources.source_record import Style
 
 if TYPE_CHECKING:
@@ -40,6 +42,13 @@ _NUMBER = re.compile(r"(\d\.\d)\d+")
 _PATH = re.compile(r' d="([^"]*)"')
 _BARE = re.compile(r"<g>\s*((?:<(?:path|text|use)\b[^>]*(?:/>|>[^<]*</text>)\s*)*)</g>")
 Box = tuple[float, float, float, float]  # left, top, width, height
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a figure for print as PNG, PDF or SVG, by the suffix of ``path``. Raises StoreError."""
+    content = io.BytesIO()
+    figure.savefig(content, format=path.suffix.lower()[1:], dpi=200, facecolor="white")
+    write_atomically(path, content.getvalue())
 
 
 def can_draw() -> bool:

@@ -312,9 +312,10 @@ def parse_study(raw: bytes, path: Path) -> Study:
     values = thicknesses_between(asked.start, asked.to, asked.count) if isinstance(asked, Range) else asked
     thicknesses = tuple(value * scale for value in values)
 
-    def slips(*given: float) -> str:
+    def first(*given: float) -> str:
         coatings = tuple((moduli[0], p.varied.nu, h) for h in given)
-        return likely_slips(replace(bare, coatings=coatings, ball=ball)).replace("coating 1", "coating")
+        slips = likely_slips(replace(bare, coatings=coatings, ball=ball)).replace("coating 1", "coating")
+        return f"{path}: {slips}; as it stands, " if slips else f"{path}: "
 
     contacts = [bare, replace(bare, load=sweep.load.start)] if sweep.load else [bare]
     ends = {min(thicknesses), max(thicknesses)}
@@ -324,12 +325,12 @@ def parse_study(raw: bytes, path: Path) -> Study:
         if not low <= h <= high:
             shown = Units.of_contact(one, a).shown_length
             raise CaseError(
-                f"{path}: sweep.{key}: value {thicknesses.index(h) + 1} is {shown(h)}; it must be "
-                f"{shown(low)} to {shown(high)}, {SUPPORTED[0]:g} to {SUPPORTED[1]:g} contact radii{slips(h)}"
+                f"{first(h)}sweep.{key}: value {thicknesses.index(h) + 1} is {shown(h)}; it must be "
+                f"{shown(low)} to {shown(high)}, {SUPPORTED[0]:g} to {SUPPORTED[1]:g} contact radii"
             )
     for E in moduli:
         if not 1e-3 <= E / p.substrate.E <= 1e3:
-            raise CaseError(f"{path}: E1/E2 = {E / p.substrate.E:.3g}; a study supports 1e-3 to 1e3{slips()}")
+            raise CaseError(f"{first()}E1/E2 = {E / p.substrate.E:.3g}; a study supports 1e-3 to 1e3")
     study = Study(
         name=path.stem,
         title=checked.title,

@@ -110,6 +110,24 @@ def test_check_shows_the_differences_and_fails_beyond_both_uncertainties(tmp_pat
         assert ("3 of 7" in " ".join(done.stdout.split())) == (code == 1)
 
 
+def test_a_check_that_is_refused_leaves_the_answer_of_the_patches(tmp_path, monkeypatch):
+    def made(problem, source, *_):
+        if source == "fem_reference":
+            raise ValueError("too many nodes; give thicker films")
+        return desk.answer(problem, "hertz")
+
+    monkeypatch.setattr(command, "answer", made)
+    alone, checked = (coatcheck(*FAST, *more, cwd=tmp_path) for more in ((), ("--check",)))
+    assert (alone.returncode, checked.returncode) == (0, 3)
+    said = [line for line in checked.stdout.splitlines() if not line.startswith("time")]
+    assert set(said) >= {line for line in alone.stdout.splitlines() if not line.startswith("time")}
+    for text in (" ".join(checked.stdout.split()), checked.stderr):
+        assert "Not checked, as the finite elements refuse this contact: too many nodes; give thicker" in text
+    content = json.loads(coatcheck(*FAST, "--check", "--json", cwd=tmp_path).stdout)
+    assert (content["check"], content["differences"]) == (None, [])
+    assert content["check_refused"].endswith("too many nodes; give thicker films")
+
+
 def test_what_cannot_be_solved_is_no_result(tmp_path, monkeypatch):
     def fails(*_):
         raise ValueError("the iteration stopped")

@@ -18,8 +18,10 @@ from synthetic_results import INFO, contact, result_of
 
 from verification.cases.case_file import shaped_cases, shipped_cases
 from verification.cases.published_file import published_cases
+from verification.commands.common.terminal import named_table, print_out
 from verification.commands.compare import compare
 from verification.commands.shipped.list_cases import list_cases
+from verification.commands.shipped.materials_listed import materials
 from verification.report.report_material import ReportMaterial
 from verification.report.report_page import report_json
 from verification.running.case_result import to_json
@@ -97,6 +99,23 @@ def test_names_are_whole_in_a_terminal(stored, screen, width):
     names = [name, *shipped_cases(), *shaped_cases(), *published_cases()]
     assert [n for n in names if n not in shown()] == []
     assert max(map(len, shown().splitlines())) <= width
+
+
+@pytest.mark.parametrize("width", [60, 80, 120])
+def test_no_word_of_a_table_is_clipped(screen, width):
+    heads = ["name", "p0 [MPa]", "largest tension of the coatings [MPa]", "used", "safety factor", "from N"]
+    cells = ["interface 2 (Cr / 100Cr6) shears off", "1024.5", "467", "0.587", "1.05e+03", "102"]
+    tables = [(heads, cells), (heads, ["nickel phosphorus as it is supplied, heated", *cells[1:]])]
+    for head, row in tables:
+        shown, table = screen(width), named_table(*head)
+        table.add_row(*row)
+        print_out(table)
+        assert [word for word in " ".join([*head, *row]).split() if word not in shown()] == []
+        assert max(map(len, shown().splitlines())) <= width
+    materials("DLC", "100Cr6", "Al2O3")
+    assert [
+        word for word in ("a-C:H", "SUJ2,", "1.3505,", "386", "446", "0.231") if word not in shown()
+    ] == []
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,6 @@
 """Inputs as people type them: understood, or one message that names the remedy and nothing written."""
 
+from itertools import permutations
 from pathlib import Path
 
 import pytest
@@ -21,6 +22,16 @@ WRONG = [
     ({"--diameter": "20 mm"}, "d = 20 mm"),
     ({"--mu": "0.1"}, "--friction"),
     ({"--nonsense": "1"}, "solve --help"),
+    ({"--force": "20 N"}, 'give --load "20 N"'),
+    ({"--residual-stress": "-2 GPa"}, "residual -1.5 GPa"),
+    ({"--dT": "-400"}, "--temperature-change"),
+    ({"--ball": "100Cr6"}, '"100Cr6 d = 6 mm"'),
+    (
+        {"--ball": "210 GPa, 0.3", "--roller": "R = 5 mm, L = 10 mm"},
+        "a cylinder without a crown is not solved",
+    ),
+    ({"--ball": "210 GPa, 0.3", "--roller": "100Cr6 5 mm, 2 m"}, "its solid is --ball"),
+    ({"--ball": "210 GPa, 0.3", "--against": "18 mm, flat"}, "radii of the other body"),
     ({"--ball": None}, "--ball"),
     ({"--friction": "0,15"}, "point"),
     ({"--friction": "3"}, "most"),
@@ -48,8 +59,10 @@ WRONG = [
     ({"--depth": "100 nm"}, ': --depth. Try: --approach "100 nm"'),
     ({"--ball": None, "--radii": "5 mm, flat"}, "a contact along a line is not solved; give a crown"),
     ({"--substrate": "3 um 210 GPa, 0.3"}, "210 GPa"),
-    ({"--coating": "a-C:H 3 um 150 GPa 0.25"}, "DLC 3 um, 450 GPa, 0.22"),
-    ({"--coating": "180 GPa, 2 um, 0.2"}, "exchange"),
+    ({"--coating": "a-C:H 3 um 150 GPa 0.25"}, "TiN 3 um, 450 GPa, 0.25"),
+    ({"--coating": "10 x (0.2, 1 um, 180 GPa / 1 um, 9 GPa, 0.3)"}, 'E, nu, "1 um, 180 GPa, 0.2"'),
+    ({"--coating": "180e9, 0.2, 2e-6"}, 'E, nu, "2e-6, 180e9, 0.2"'),
+    ({"--coating": "20 x (2, 180 GPa, 0.2)"}, 'options: coating 1, thickness = 2 looks like um, give "2 um"'),
     ({"--coating": "2 um, 180 GPa, 0.2, -2 GPa"}, "residual -1.5 GPa"),
     ({"--coating": "2 um, 180 GPa, 0.2, strength 2 um"}, "strength must be"),
     ({"--coating": "0 x (2 um, 180 GPa, 0.2)"}, "repeat = 0"),
@@ -163,6 +176,13 @@ TYPED = [
      'a number with a unit is a text in quotation marks, such as "20 N"'),
     ("friction = 0.1", "friction = 0,1", f"{NO_TOML} (at line 5, column 13); "
      "write decimals with a point, such as 0.15"),
+    (f"[sweep]\n{LIST}\n", "", "the file has no sweep, which a study has and a case has not: try coatcheck "
+     "solve or coatcheck run with it, or change the study that coatcheck study init thickness writes"),
+    ("[[problem.coatings]]", "[sweep]\n[[problem.coatings]]",
+     "the file has a sweep, which is that of a study: try coatcheck study thickness with it"),
+    ("[[problem.coatings]]",
+     'coatings = [{ repeat = 9, stack = [{ E = "4 GPa", nu = 0.7, thickness = "2 um" }] }]\n[more]',
+     "more is an unknown key; coating 1, nu must be at most 0.5, not 0.7 (and 8 more of the same)"),
     (LIST, 'thickness = ["1 N"]', f"sweep, thickness, value 1 {NO_LENGTH[7:]} "
      "'1 N'; 'N' is not a unit of length, but of force"),
     (LIST, "thicknes = [2e-5]", "sweep, thicknes is an unknown key; did you mean thickness?"),
@@ -178,6 +198,14 @@ def test_a_slip_in_a_file_is_one_message_as_a_person_would_say_it(old, new, mess
     done = coatcheck(*command, str(path), cwd=tmp_path)
     assert (done.returncode, done.stdout, list(tmp_path.iterdir())) == (2, "", [path])
     assert done.stderr == f"coatcheck: {path}: {message}\n"
+
+
+def test_any_other_order_of_a_layer_is_told_the_right_one():
+    words = ("2 um", "180 GPa", "0.2")
+    for order in [*permutations(words)][1:]:
+        given = ", ".join(order)
+        with pytest.raises(ValueError, match=f'"{given}": the order is .*, "{", ".join(words)}"$'):
+            case_text("7 mm", "20 N", "210 GPa, 0.3", [given])
 
 
 NAMED = [
@@ -196,6 +224,12 @@ NAMED = [
     ("210000 N/mm2, 0.3", "substrate", "", 210e9),
     ("DLC, 3 um, 150 GPa, 0.25", "coating", "DLC", 3e-6),
     ("TiN: 3 microns, 450 GPa, 0.25", "coating", "TiN", 3e-6),
+    ("3 um DLC", "coating", "DLC", 3e-6),
+    ("DLC, 3 um", "coating", "DLC", 3e-6),
+    ("3 um, DLC", "coating", "DLC", 3e-6),
+    ("DLC 3 um, E = 150 GPa, nu = 0.25", "coating", "DLC", 3e-6),
+    ("6 mm 100Cr6", "ball", "100Cr6", 6e-3),
+    ("100Cr6, d = 6 mm", "ball", "100Cr6", 3e-3),
 ]
 
 
@@ -212,6 +246,27 @@ def test_names_and_units_beside_numbers_are_understood(text, option, name, value
     assert found[option] == pytest.approx(value, rel=1e-12)
     body, at = {"ball": ("ball", -1), "substrate": ("flat", -1), "coating": ("flat", 0)}[option]
     assert case.names[body][at] == name
+
+
+def test_a_ball_with_its_size_lies_in_its_race():
+    words = ("5 N", "100Cr6")
+    race = case_text("100Cr6 d = 9.525 mm", *words, against="18.2 mm, -4.9 mm")
+    radii = {"radii": "4.7625 mm, 4.7625 mm", "against": "18.2 mm, -4.9 mm"}
+    stated = [
+        parse_case(text.encode(), Path("options")) for text in (race, case_text("100Cr6", *words, **radii))
+    ]
+    assert stated[0].problem == stated[1].problem
+    rigid = case_text("4.7625 mm", *words, against="18.2 mm, -4.9 mm")
+    assert parse_case(rigid.encode(), Path("options")).problem.ball is None
+
+
+def test_stacks_part_where_a_layer_ends():
+    for between in (" / ", "/", "/ "):
+        text = case_text(
+            "6 mm", "5 N", "100Cr6", [f"5 x (WC/C 100 nm, 200 GPa, 0.2{between}CrN 100nm{between}DLC 1 um)"]
+        )
+        names = parse_case(text.encode(), Path("options")).names["flat"]
+        assert names == (*5 * ("WC/C", "CrN", "DLC"), "100Cr6")
 
 
 def test_likely_slips_that_are_valid_have_one_line_each():

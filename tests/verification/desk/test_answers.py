@@ -145,6 +145,13 @@ def test_summary_names_the_tension_of_a_coating_before_a_larger_one_elsewhere(so
     assert second == "Largest anywhere: 10000 MPa, in the substrate"
 
 
+def test_summary_does_not_leave_out_a_large_uncertainty(solved):
+    extremes = solved[SLIDING].extremes
+    for share, said in ((0.04, False), (2.0, True)):
+        doubted = tuple(replace(e, uncertainty=share * abs(e.value)) for e in extremes)
+        assert ("±" in summary(SLIDING, replace(solved[SLIDING], extremes=doubted), {})) == said
+
+
 def test_differences_are_by_key_with_both_uncertainties(solved):
     first = solved[SLIDING]
     assert all(d.value == 0 and d.within for d in differences(first, first))

@@ -3,6 +3,7 @@
 import json
 import re
 import shlex
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -113,6 +114,16 @@ def test_a_film_is_thick_in_the_radius_of_its_own_contact():
     assert "coating 1, h = 15 a, outside" in said
     assert "a_h" not in said
     assert "h =" not in outside_verified(parsed(gel.replace("10e-6", "3e-6")))
+
+
+def test_every_solid_beyond_the_range_of_the_comparisons_is_named():
+    case = parsed(case_text("E = 210e9; nu = -0.2; thickness = 70e-6"))
+    assert outside_verified(case) == "coating 1, nu = -0.2, outside 0 to 0.49"
+    beyond = replace(case.problem, friction=0.9, coatings=6 * case.problem.coatings, ball=(3e9, 0.5, ()))
+    assert outside_verified(replace(case, problem=beyond)) == (
+        "friction f = 0.9, outside 0 to 0.8; 6 coatings, outside 0 to 5; coating 1 and 5 more, nu = -0.2, "
+        "outside 0 to 0.49; ball, nu = 0.5, outside 0 to 0.49"
+    )
 
 
 # The contact that was shown under 1000 N, an AFM tip, a small tip, a gel under a bead.

@@ -35,7 +35,10 @@ def require_checkout(folder: Path, option: str) -> None:
         )
 
 
-def require_format(path: Path, formats: Sequence[str], option: str) -> None:
+FIGURES = (".png", ".pdf", ".svg")
+
+
+def require_format(path: Path, option: str, formats: Sequence[str] = FIGURES) -> None:
     """Raises CommandError where a file of an option has no name of one of its ``formats``, or no folder."""
     if path.suffix.lower() not in formats:
         raise CommandError(f"{option} = {path}; the name has to end in {', '.join(formats)}")

@@ -9,9 +9,9 @@ from typing import Any
 
 from rich.console import Console
 from rich.markup import escape
-from rich.table import Column, Table
+from rich.table import Table
 
-from verification.commands.common.terminal import STYLE, UNBROKEN, one_line, while_read
+from verification.commands.common.terminal import STYLE, UNBROKEN, named_table, one_line, while_read
 from verification.judging.invariant_verdict import Invariant
 from verification.judging.outcome import DECIDED, Outcome
 from verification.regression.baseline_change import Regression, State, baseline_message
@@ -108,7 +108,7 @@ def _table(results: Sequence[CaseResult], beside: Regression, *, narrow: bool) -
     # Without a baseline, or in a narrow terminal, the line below the table is enough.
     states = beside.update is not None and not narrow
     heads += ["baseline"] if states else []
-    table = Table(Column("case", overflow="fold"), box=None, header_style="bold", pad_edge=False)
+    table = named_table("case")
     for head in heads:
         table.add_column(head, no_wrap=True, vertical="bottom")
     for result in results:

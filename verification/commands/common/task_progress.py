@@ -7,7 +7,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
 
-from rich.console import Console
 from rich.markup import escape
 
 from verification.cases.case_file import Case
@@ -85,10 +84,8 @@ def solve(
     verbose : print seconds, iterations and unknowns of every source.
     executor, meanwhile : as in ``run_tasks``.
     """
-    console = Console(stderr=True)
-    bar = progress_bar(console, silent=silent)
     at_work: list[str] = []
-    with bar:
+    with progress_bar(silent=silent) as bar:
         task = bar.add_task("solving", total=len(tasks))
 
         def started(name: str) -> None:
@@ -101,9 +98,9 @@ def solve(
             if not silent and isinstance(result, CaseResult) and result.verdicts:
                 colour = STYLE[result.outcome]
                 line = f"[{colour}]{result.outcome:<12}[/] {escape(result.name)}  {result.seconds:.1f} s"
-                console.print(line, highlight=False)
+                bar.console.print(line, highlight=False)
                 if verbose:
-                    console.print(escape(_sources(result)), style="dim", highlight=False)
+                    bar.console.print(escape(_sources(result)), style="dim", highlight=False)
 
         return run_tasks(
             tasks,

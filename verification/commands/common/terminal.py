@@ -11,6 +11,8 @@ from contextlib import contextmanager
 from difflib import get_close_matches
 from functools import wraps
 from pathlib import Path
+from shutil import get_terminal_size
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, ParamSpec
 
 from verification.commands.common.command_error import BAD_INPUT, CommandError
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
 
 P = ParamSpec("P")
 UNBROKEN = 100_000  # columns of a file or pipe
+SHORT = 12  # characters of a cell that is never broken
 STYLE = {
     Outcome.AGREES: "green",
     Outcome.DISAGREES: "bold red",
@@ -102,7 +105,8 @@ def named_table(*heads: str) -> "Table":
     """A table for ``print_out``; its first column holds names that users type."""
     from rich.table import Column, Table
 
-    return Table(Column(heads[0], overflow="fold"), *heads[1:], box=None, header_style="bold")
+    columns = (Column(head, overflow="fold") for head in heads)
+    return Table(*columns, box=None, header_style="bold", pad_edge=False)
 
 
 @while_read()
@@ -116,10 +120,18 @@ def print_out(*items: "Table | str") -> None:
         console = Console(highlight=False, width=UNBROKEN)
     for item in items:
         if isinstance(item, Table):
-            # The other columns give way first, unless the names fill half of the terminal.
-            longest = max((len(str(cell)) for cell in item.columns[0].cells), default=0)
-            item.columns[0].no_wrap = longest <= console.width / 2
+            # Numbers never give way, names only where there is no room for the words beside them.
+            names, *others = (max(len(str(one)) for one in (c.header, *c.cells)) for c in item.columns)
+            for column, longest in zip(item.columns[1:], others, strict=True):
+                column.no_wrap = column.no_wrap or longest <= SHORT
+            beside = sum(2 + min(longest, SHORT) for longest in others)
+            item.columns[0].no_wrap = names + beside <= console.width
         console.print(item)
+
+
+def paragraph(text: str, most: int = 79) -> list[str]:
+    """``text`` in lines of at most ``most`` characters, fewer in a narrower terminal."""
+    return wrap(text, min(most, get_terminal_size().columns))
 
 
 def one_line(message: str, most: int = 1000) -> str:

@@ -39,17 +39,14 @@ class _Description(ProgressColumn):
         return Text(task.description, no_wrap=True, overflow="ellipsis")
 
 
-def progress_bar(console: Console, *more: ProgressColumn, silent: bool = False) -> Progress:
-    """A bar that counts, with time gone and left; nothing at all where ``console`` is not a terminal.
-
-    more : columns behind the count.
-    """
+def progress_bar(console: Console | None = None, *, silent: bool = False) -> Progress:
+    """A bar that counts, with time gone and left, on standard error; nothing where that is no terminal."""
+    console = console or Console(stderr=True)
     return Progress(
         # Words and bar give way where the terminal is narrow; counts and times stay whole.
         _Description(table_column=Column(no_wrap=False)),
         *([BarColumn(table_column=Column(no_wrap=False))] if console.width >= NARROW else []),
         MofNCompleteColumn(),
-        *more,
         TimeElapsedColumn(),
         TextColumn("left"),
         TimeRemainingColumn(),

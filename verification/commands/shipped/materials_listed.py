@@ -25,19 +25,24 @@ def materials(*names: str, file: Path = SHIPPED, as_json: AsJson = False) -> int
         if (found := known.get(plain_name(name))) is None:
             raise CommandError(f"{name}: not in {file}{meant(name, known)}")
         chosen.append(found)
-    every = list({one.name: one for one in known.values()}.values())
-    chosen = chosen or every
+    chosen = chosen or list({one.name: one for one in known.values()}.values())
     if as_json:
         print_json([one.model_dump(exclude_none=True) for one in chosen])
         return 0
-    table = named_table("name", "E", "range", "nu", "yields", "also", "compared")
+    table = named_table("name", "E GPa", "range GPa", "nu", "also")
+    lines = []
     for one in chosen:
-        yields = prefixed(one.yield_strength, "Pa") if one.yield_strength else ""
-        cells = (prefixed(one.E, "Pa"), one.range, f"{one.nu:g}", yields, ", ".join(one.also), one.checked)
-        table.add_row(escape(one.name), *map(escape, cells))
-    said = f"typical values, for lack of your own: {file}; compared: with the source or its abstract"
-    notes = {one.name: "" if one.note == "-" else f"; {one.note}" for one in chosen}
-    print_out(
-        table, "", *(escape(f"{one.name}: {one.source}{notes[one.name]}") for one in chosen), "", escape(said)
+        ends = f"{one.low / 1e9:g} to {one.high / 1e9:g}" if one.low and one.high else ""
+        cells = (one.name, f"{one.E / 1e9:g}", ends, f"{one.nu:g}", ", ".join(one.also))
+        table.add_row(*map(escape, cells))
+        more = [
+            f"yields at {prefixed(one.yield_strength, 'Pa')}" if one.yield_strength else "",
+            one.note.strip("-"),
+            f"compared with it: {one.checked}" if one.checked != "no" else "",
+        ]
+        lines.append(escape(f"{one.name}: {'; '.join([one.source, *filter(None, more)])}"))
+    said = (
+        f"typical values, for lack of your own: {file}; each was compared with its source where that is said"
     )
+    print_out(table, "", *lines, "", escape(said))
     return 0

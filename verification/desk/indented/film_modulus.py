@@ -26,6 +26,7 @@ from scipy.stats import t as student
 from verification.desk.indented.indentation_curve import IndentationCurve
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact
+from verification.sources.exact_sources import solve_exactly
 from verification.sources.references.integral_equation import Equation
 from verification.sources.references.solids_in_contact import combined_modulus, radius_estimate, solids_of
 
@@ -182,7 +183,10 @@ def film_modulus(
     a, load, *_ = _states(here, kind, x)
     largest = float(np.exp(np.interp(np.log(x.max()), np.log(a if kind == "punch" else load), np.log(a))))
     ends = [at(float(np.clip(u + s * half, scanned[0], scanned[-1])), shift) for s in (-1, 1)]
-    E = float(np.exp(u))
+    E, peak = float(np.exp(u)), float("nan")
+    if kind != "punch":
+        pressed = replace(here, load=float(x.max()))
+        peak = solve_exactly(pressed, {"estimate_uncertainty": False}).peak_pressure
     return FilmFit(
         kind,
         E,
@@ -196,7 +200,7 @@ def film_modulus(
         inputs,
         r,
         largest,
-        _peak(here, float(x.max())) if kind != "punch" else float("nan"),
+        peak,
     )
 
 
@@ -237,10 +241,3 @@ def _moved(problem: CoatedContact, film: int, kind: str) -> Iterator[tuple[str, 
         yield "E of the ball", replace(problem, ball=(1.01 * E, nu, coatings))
     if kind != "punch":
         yield "radius of the ball", replace(problem, radius=1.01 * problem.radius)
-
-
-def _peak(problem: CoatedContact, load: float) -> float:
-    """Peak pressure [Pa] under a load."""
-    from verification.sources.exact_sources import solve_exactly
-
-    return solve_exactly(replace(problem, load=load), {"estimate_uncertainty": False}).peak_pressure

@@ -1,6 +1,5 @@
 """Picture of a measured surface in contact: its heights as they are pressed, and the pressure."""
 
-import io
 from pathlib import Path
 
 import matplotlib as mpl
@@ -9,15 +8,12 @@ from matplotlib.figure import Figure
 
 from verification.desk.measured.surface_contact import SurfaceContact
 from verification.desk.measured.surface_map import SurfaceMap
+from verification.page.figures import save
 from verification.problem.display_units import Units
-from verification.running.checked_files import write_atomically
-
-FORMATS = (".png", ".pdf", ".svg")
 
 
 def write(surface: SurfaceMap, found: SurfaceContact, title: str, units: Units, path: Path) -> None:
     """Write the picture as PNG, PDF or SVG, by the suffix of ``path``. Raises StoreError."""
-    content = io.BytesIO()
     with mpl.rc_context({"font.size": 9}):
         figure = Figure(figsize=(9.0, 4.2), layout="constrained")
         left, right = figure.subplots(1, 2)
@@ -32,5 +28,4 @@ def write(surface: SurfaceMap, found: SurfaceContact, title: str, units: Units, 
         for axes in (left, right):
             axes.set(xlabel=f"x [{units.length}]", ylabel=f"y [{units.length}]", aspect="equal")
         figure.suptitle(title, fontsize=9, wrap=True)
-        figure.savefig(content, format=path.suffix.lower()[1:], dpi=200, facecolor="white")
-    write_atomically(path, content.getvalue())
+        save(figure, path)

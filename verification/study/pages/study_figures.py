@@ -196,8 +196,15 @@ def _beside(axes: Axes, size: float, label: str) -> None:
     """A second vertical axis for the values over ``size``."""
     second = axes.secondary_yaxis("right", functions=_over(size))
     second.set_ylabel(label)
-    # A power of ten of its own would lie on the numbers of the axis above.
-    second.yaxis.set_major_formatter(lambda value, _: f"{value:.4g}")
+    second.yaxis.set_major_formatter(lambda value, _: _short(value))
+
+
+def _short(value: float) -> str:
+    """A number beside an axis: a power of ten common to all would lie on the numbers of the axis above."""
+    if not 0 < abs(value) < 0.01:
+        return f"{value:.4g}"
+    digits, power = f"{value:.2e}".split("e")
+    return f"{float(digits):g}e{int(power)}"
 
 
 def _over(size: float) -> tuple[Callable[[Any], Any], Callable[[Any], Any]]:
