@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from verification.sources.references.hertz import Hertz
+from verification.study.study_point import problem_of
 
 FAILING = 7e-5  # m; a coating of this thickness has no solution here
 
@@ -24,8 +25,9 @@ cross_check = 5
 
 def made_up(request: Mapping[str, Any]) -> dict[str, Any]:
     """Hertz on the coating's material."""
-    E, nu, thickness = request["coating"]
-    hertz = Hertz(request["radius"], request["load"], E, nu)
+    problem = problem_of(request, 0.0)
+    ((E, nu, thickness),) = problem.coatings
+    hertz = Hertz(problem.radius, problem.load, E, nu)
     rows = [
         {"friction": f, "status": "failed", "failure": "no such thickness"}
         if thickness == FAILING

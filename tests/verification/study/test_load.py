@@ -1,5 +1,6 @@
 """Critical loads: exact where h/a_h has no part, similarity of contacts, strengths that scatter."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,12 +8,13 @@ import pytest
 from synthetic_solves import STUDY
 
 from verification.problem.coated_contact import CoatedContact
+from verification.running.json_records import encode
 from verification.study.choice.critical_load import Critical, Ramp, critical, extended, ramps
 from verification.study.choice.failure_criteria import Criteria, Uniform
 from verification.study.largest_stresses import QUANTITIES
 from verification.study.pages.load_page import answers, write_load_report
 from verification.study.study_plan import parse_study
-from verification.study.study_point import answer, table_rows
+from verification.study.study_point import answer, problem_of, table_rows
 from verification.study.study_table import read_columns, write_table
 
 LOADS = STUDY.replace("load = 20.0", "").replace(
@@ -146,20 +148,16 @@ def test_equal_thickness_over_contact_radius_is_solved_once():
 
 
 def test_a_row_at_another_load_is_what_a_solve_of_its_own_gives():
-    coating, load = (420e9, 0.25, 4e-5), 20.0
+    own = CoatedContact(10e-3, 20.0, ((420e9, 0.25, 4e-5),), (210e9, 0.3))
     scale = 1.3
-    request = {
-        "source": "integral_equation", "numerics": {"estimate_uncertainty": False}, "radius": 10e-3,
-        "substrate": [210e9, 0.3], "ball": None,
-        "frictions": [0.2],
-    }  # fmt: skip
+    (E, nu, h), load = own.coatings[0], own.load / scale**3
+    first = replace(own, load=load, coatings=((E, nu, h / scale),))
     # the second place has h and a_h times 1.3; its residual stress over p_h is that of the request
-    places = ((coating[2] / scale, load / scale**3), (coating[2], load))
-    request |= {"load": places[0][1], "coating": [*coating[:2], places[0][0]]}
-    request |= {"residual": [-1e8, -1e8 / scale]}
-    rows = table_rows(0, "k", request, answer(request), places)
-    alone = request | {"load": load, "coating": list(coating), "residual": [-1e8]}
-    (own,) = table_rows(0, "k", alone, answer(alone), (places[1],))
+    asked = {"source": "integral_equation", "numerics": {"estimate_uncertainty": False}, "swept": 0}
+    asked |= {"frictions": [0.2], "problem": encode(first), "residual": [-1e8, -1e8 / scale]}
+    rows = table_rows(0, "k", asked, answer(asked), ((h / scale, load), (h, own.load)))
+    alone = asked | {"problem": encode(own), "residual": [-1e8]}
+    (own,) = table_rows(0, "k", alone, answer(alone), ((h, own.load),))
     for name in ("residual_stress", "a_h", "p_h", "peak_pressure", "contact_radius", "approach", *QUANTITIES):
         assert rows[1][name] == pytest.approx(own[name], rel=1e-7, abs=1.0), name
 
@@ -181,7 +179,7 @@ def test_report_of_a_load_study_answers_first(tmp_path):
 
 
 def _closed(request, f):
-    contact = CoatedContact(request["radius"], request["load"], (), tuple(request["substrate"]))
+    contact = replace(problem_of(request, f), coatings=())
     row = {"friction": f, "status": "solved", "failure": None}
     for name in QUANTITIES:
         row |= {name: (0.3 + f) * contact.p_h, f"{name}_over_p_h": 0.3 + f, f"{name}_uncertainty": 0.0}
