@@ -161,10 +161,7 @@ def _groups(found: Sequence[Critical]) -> dict[tuple[float, float], list[Critica
 def _maps(study: Study, found: Sequence[Critical]) -> list[Drawn]:
     """Critical load of each mode over the thickness, with the band of 90 % of the strengths."""
     drawings, units = [], study.units
-    groups: dict[tuple[float, float], list[Critical]] = {}
-    for one in sorted(found, key=lambda one: one.ramp.thickness):
-        groups.setdefault((one.ramp.ratio, one.ramp.friction), []).append(one)
-    for (ratio, friction), members in groups.items():
+    for (ratio, friction), members in _groups(found).items():
         if len(members) < 2:
             continue
         modes = [mode for mode in members[0].of if any(np.isfinite(one.of[mode][0]) for one in members)]
