@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import study_table
 from synthetic_solves import STUDY
 
 from verification.problem.coated_contact import CoatedContact
@@ -14,8 +15,8 @@ from verification.study.choice.failure_criteria import Criteria, Uniform
 from verification.study.largest_stresses import QUANTITIES
 from verification.study.pages.load_page import answers, write_load_report
 from verification.study.study_plan import parse_study
-from verification.study.study_point import answer, problem_of, table_rows
-from verification.study.study_table import read_columns, write_table
+from verification.study.study_point import answer, table_rows
+from verification.study.study_table import read_columns
 
 LOADS = STUDY.replace("load = 20.0", "").replace(
     "cross_check = 5", "cross_check = 0\nload = { from = 4, to = 30, count = 5 }"
@@ -77,14 +78,9 @@ def test_below_the_ramp_no_mode_is_the_first_of_several():
 
 
 def solved_table(text, path, study=None):
-    """The study of ``text`` with its table of closed forms at ``path``."""
-    study, rows = study or parse_study(text.encode(), path.with_suffix(".toml")), []
-    for one in study.solves():
-        made = [_closed(one.request, f) for f in one.request["frictions"]]
-        found = {"rows": made, "versions": {}, "seconds": 0.0}
-        rows += table_rows(one.first, one.key, one.request, found, one.places)
-    write_table(path, rows, {"name": path.stem, "text": text})
-    return study
+    """The study of ``text`` with its table at ``path``, of stresses that grow with friction alone."""
+    law = lambda quantity, ratio, h, f: 0.3 + f  # noqa: E731
+    return study_table.write(path, text=text, study=study, law=law)
 
 
 @pytest.mark.parametrize("begin", [5.0, 40.0, 70.0])
@@ -176,13 +172,3 @@ def test_report_of_a_load_study_answers_first(tmp_path):
     one = critical(ramp, study.criteria, study.loads[:2])
     assert isinstance(one, Critical)
     assert answers(study, [one])[0] == written.answer[0]
-
-
-def _closed(request, f):
-    contact = replace(problem_of(request, f), coatings=())
-    row = {"friction": f, "status": "solved", "failure": None}
-    for name in QUANTITIES:
-        row |= {name: (0.3 + f) * contact.p_h, f"{name}_over_p_h": 0.3 + f, f"{name}_uncertainty": 0.0}
-        row |= {f"{name}_x": 0.0, f"{name}_z": 0.0}
-    scales = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
-    return row | {name: getattr(contact, scale) for name, scale in scales.items()}
