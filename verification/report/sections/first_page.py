@@ -68,7 +68,8 @@ def contents(material: ReportMaterial) -> dict[str, Any]:
         "worth": worth(material),
         "model": model_costs(material),
         "left_out": left_out(material.results),
-        "unverified": _unverified(material),
+        "most_coatings": max([MOST_COATINGS, *(len(layers(one.problem)) - 1 for one in material.contacts)]),
+        "validated": material.evidence.validation is not None,
         "shaped": any(result.problem.get("indenter") for result in material.contacts),
     }
 
@@ -304,26 +305,6 @@ def model_costs(material: ReportMaterial) -> list[Worth]:
             cost, result = max(found, key=lambda one: one[0].size)
             rows.append(Worth(title, cost.words, f"#{material.anchors[result]}", None, result.title))
     return rows
-
-
-def _unverified(material: ReportMaterial) -> list[str]:
-    """Problems that no comparison of the run reaches, a line each."""
-    most = max((len(layers(result.problem)) - 1 for result in material.contacts), default=0)
-    texts = [
-        f"More than {max(most, MOST_COATINGS)} coatings, and what lies outside the ranges of the problems "
-        "solved.",
-        "Residual stress, temperature, graded coatings, strengths and critical loads: coatcheck solve and "
-        "study add them to the stresses, without a second method.",
-        "Ellipses on films that are thin beside their short half axis: the elements are so uncertain there "
-        "that much is inconclusive (manual, Uncertainty and verdict).",
-        "Stress, friction and shape of the contact in an experiment."
-        if material.evidence.validation
-        else "Any experiment.",
-    ]
-    share, count = left_out(material.results)
-    if count:
-        texts.append(f"Points within {share:.0f} % of the contact edge, in {count} comparisons.")
-    return texts
 
 
 def worth(material: ReportMaterial) -> list[Worth]:

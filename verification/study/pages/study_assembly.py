@@ -5,12 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from markupsafe import Markup
 from numpy.typing import NDArray
 
 from verification.page.figures import inline
 from verification.page.html_page import render_sections
-from verification.page.page_parts import Gallery, Panel, Part, Section, embedded, number, table_of, words
+from verification.page.page_parts import Gallery, Panel, Part, Section, number, table_of, words
 from verification.page.source_labels import source_label
 from verification.problem.array_types import Coatings
 from verification.problem.display_units import radii_text
@@ -169,16 +168,10 @@ def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Sectio
     panels = [
         Panel(
             d.title,
-            Markup(
-                '{}<a class="csv" href="{}" download="{}.csv.gz" data-csv="{}.csv">Numbers as CSV</a>'
-            ).format(
-                inline(d.svg.decode(), f"{d.name}: {d.title}. {d.caption}", css="print"),
-                embedded(d.csv),
-                d.name,
-                d.name,
-            ),
+            inline(d.svg.decode(), f"{d.name}: {d.title}. {d.caption}", css="print"),
             d.caption,
-            "",
+            csv=d.csv,
+            file=f"{d.name}.csv",
         )
         for d in drawings
     ]
