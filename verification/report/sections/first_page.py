@@ -15,7 +15,7 @@ from verification.evidence.code_record import shared_functions
 from verification.evidence.first_notice import by_place, score
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.number_text import plain, scientific
-from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of
+from verification.page.source_labels import OUTCOMES, source_label, symbol_of
 from verification.problem.line_profile import EDGE_LINE
 from verification.problem.quantity import QUANTITIES, SCALARS, SLOPES
 from verification.regression.baseline_change import State, baseline_message
@@ -54,11 +54,21 @@ class Worth:
 
 def contents(material: ReportMaterial) -> dict[str, Any]:
     """Content of the template of the first page."""
+    outcomes = Counter(verdict.outcome for result in material.results for _, verdict in result.verdicts)
     return {
-        "asked": _asked(material),
-        "headline": _headline(material),
+        "contacts": material.contacts,
+        "sources": material.published,
+        "results": material.results,
+        "bad": sum(result.outcome is not Outcome.AGREES for result in material.results),
+        "agreeing": outcomes[Outcome.AGREES],
+        "total": outcomes.total(),
         "largest": _largest(material),
-        "tallies": _tallies(material),
+        # the agreeing ones first
+        "tallies": [
+            (OUTCOMES[one], outcomes[one])
+            for one in reversed(OUTCOMES)
+            if outcomes[one] or one is Outcome.AGREES
+        ],
         "alarms": _alarms(material),
         "answered": _answered(material),
         "agreements": agreements(material),
@@ -81,31 +91,6 @@ def _answered(material: ReportMaterial) -> list[tuple[str, str]]:
     for name in sorted(found, key=lambda name: (list(SOURCES).index(name) if name in SOURCES else 99, name)):
         texts.setdefault("closed" if name in CLOSED else name, []).append(source_label(name))
     return [(key, ", ".join(labels)) for key, labels in texts.items()]
-
-
-def _headline(material: ReportMaterial) -> str:
-    results = material.results
-    if not results:
-        return "No case was run."
-    total = sum(len(result.verdicts) for result in results)
-    agreeing = sum(v.outcome is Outcome.AGREES for result in results for _, v in result.verdicts)
-    bad = sum(result.outcome is not Outcome.AGREES for result in results)
-    cases = _counted(results, "case")
-    if not bad:
-        return f"All {total} comparisons of {cases} agree within their numerical uncertainty"
-    return f"{bad} of {cases} do not agree: {total - agreeing} of {total} comparisons"
-
-
-def _asked(material: ReportMaterial) -> str:
-    """The contacts and sources compared, in one sentence."""
-    contacts, published = material.contacts, material.published
-    texts = [f"{_counted(contacts, 'contact')} with a coated solid"] if contacts else []
-    texts += [_counted(published, "published source")] if published else []
-    return f"{' and '.join(texts)}, solved by independent methods." if texts else ""
-
-
-def _counted(results: Sequence[CaseResult], noun: str) -> str:
-    return f"{len(results)} {noun}{'' if len(results) == 1 else 's'}"
 
 
 def _largest(material: ReportMaterial) -> list[str]:
@@ -211,12 +196,6 @@ def _place(claim: Claim) -> str:
 def _badness(result: CaseResult) -> tuple[int, float]:
     largest = max((item.difference or 0.0 for item in items_of(result.verdicts)), default=0.0)
     return OUTCOMES[result.outcome].rank, -largest
-
-
-def _tallies(material: ReportMaterial) -> list[tuple[OutcomeStyle, int]]:
-    """How many comparisons have each verdict, the agreeing ones first."""
-    counted = Counter(verdict.outcome for result in material.results for _, verdict in result.verdicts)
-    return [(OUTCOMES[o], counted[o]) for o in reversed(OUTCOMES) if counted[o] or o is Outcome.AGREES]
 
 
 def repeated(material: ReportMaterial) -> set[tuple[str, int]]:
