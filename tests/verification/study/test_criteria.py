@@ -74,7 +74,7 @@ def test_reading_error_bounds_what_a_curve_read_between_its_points_is_off_by(fou
 def test_uncertain_stress_shrinks_what_is_surely_admissible(found):
     curve = found[3]
     blurred = type(curve)(
-        **{**vars(curve), "uncertainty": {q: np.full(curve.h.size, 0.05) for q in curve.stress}}
+        **{**vars(curve), "uncertainty": {q: np.full(curve.h.size, 0.05) for q in curve.uncertainty}}
     )
     strength = Criteria(strength={"sigma_xx_surface": 0.9 * study_table.P_H})
     (low, high), (sure_low, sure_high) = ends(curve, strength), ends(blurred, strength)

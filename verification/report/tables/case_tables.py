@@ -138,11 +138,7 @@ def stress_table(result: CaseResult, found: Designed) -> Table:
 
 def contact_tables(result: CaseResult) -> list[Table]:
     """The numbers of the contact, then of an elastic ball those of its own surface."""
-    text = (
-        "In parentheses the uncertainty of the last digits. Below, |A − B| of each pair of sources, its U, "
-        "over the value; of the largest tension over the smaller of p_h and p0, of its place over a."
-    )
-    tables = [_contact_table(result, SCALARS + SLOPES + PEAKS, text)]
+    tables = [_contact_table(result, SCALARS + SLOPES + PEAKS, stated("contact_numbers"))]
     if layers(result.problem, BALL):
         tables.append(_contact_table(result, BALL_PEAKS, "The surface of the ball."))
     return [table for table in tables if table]

@@ -172,7 +172,7 @@ def choice(curves: Sequence[ThicknessCurve], criteria: Criteria) -> Choice:
     h = np.geomspace(max(one.h[0] for one in members), min(one.h[-1] for one in members), SAMPLES)
     use, bound, errors = [], [], [0.0]
     for one in members:
-        s, stress = np.log(one.h), np.array([one.stress[mode] for mode in strengths])
+        s, stress = np.log(one.h), np.array([one.value[mode] for mode in strengths])
         U = np.nan_to_num([one.uncertainty[mode] for mode in strengths])
         use.append(PchipInterpolator(s, scale * stress, axis=1)(np.log(h)))
         bound.append(PchipInterpolator(s, scale * (stress + U), axis=1)(np.log(h)))
