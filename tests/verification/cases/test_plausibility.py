@@ -11,7 +11,6 @@ from verification.cases.toml_file import CaseError
 from verification.problem.coated_contact import CoatedContact
 from verification.study.study_plan import parse_study, read_study_file, shipped_studies
 
-CONTACT = CoatedContact(10e-3, 20.0, ((450e9, 0.22, 3e-6),), (210e9, 0.3))
 CASE = case_text(
     "E = {coating}; nu = 0.22; thickness = {thickness}",
     radius="{radius}",
