@@ -1,6 +1,7 @@
 """A study's table made of closed formulas, without any method, for criteria, figures, summary."""
 
 import numpy as np
+from case_texts import study_text
 
 from verification.problem.coated_contact import CoatedContact
 from verification.study.largest_stresses import QUANTITIES
@@ -8,19 +9,12 @@ from verification.study.study_plan import parse_study
 from verification.study.study_point import problem_of, table_rows
 from verification.study.study_table import SCALARS, write_table
 
-TEXT = """
-title = "Made of formulas"
-[problem]
-radius = 10e-3
-load = 20.0
-substrate = { E = 210e9, nu = 0.3 }
-coating = { nu = 0.3 }
-[sweep]
-modulus_ratio = [0.5, 2.0]
-thickness_over_a_h = { from = 0.05, to = 5.0, count = 9 }
-friction = [0.0, 0.25]
-cross_check = 5
-"""
+TEXT = study_text(
+    "coating = { nu = 0.3 }",
+    sweep="modulus_ratio = [0.5, 2.0]; thickness_over_a_h = { from = 0.05, to = 5.0, count = 9 }; "
+    "friction = [0.0, 0.25]; cross_check = 5",
+    title="Made of formulas",
+)
 BARE = CoatedContact(10e-3, 20.0, (), (210e9, 0.3))
 P_H = BARE.p_h
 

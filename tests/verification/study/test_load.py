@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import study_table
+from case_texts import study_text
 from synthetic_solves import STUDY
 
 from verification.problem.coated_contact import CoatedContact
@@ -21,24 +22,14 @@ from verification.study.study_table import read_columns
 LOADS = STUDY.replace("load = 20.0", "").replace(
     "cross_check = 5", "cross_check = 0\nload = { from = 4, to = 30, count = 5 }"
 )
-EQUAL = """
-title = "Equal moduli"
-[problem]
-radius = 10e-3
-substrate = { E = 210e9, nu = 0.3 }
-coating = { E = 210e9, nu = 0.3 }
-[sweep]
-load = { from = 5.0, to = 80.0, count = 4 }
-thickness = [5e-5]
-friction = [0.0, 0.25]
-cross_check = 0
-[semianalytic]
-patches = 33
-estimate_uncertainty = false
-[criteria.strength]
-sigma_xx_surface = "1 GPa"
-von_mises_substrate = { from = "0.6 GPa", to = "0.9 GPa" }
-"""
+EQUAL = study_text(
+    "coating = { E = 210e9, nu = 0.3 }",
+    sweep="load = { from = 5.0, to = 80.0, count = 4 }; thickness = [5e-5]; friction = [0.0, 0.25]; "
+    "cross_check = 0",
+    load="",
+    tables="[semianalytic]\npatches = 33\nestimate_uncertainty = false\n[criteria.strength]\n"
+    'sigma_xx_surface = "1 GPa"\nvon_mises_substrate = { from = "0.6 GPa", to = "0.9 GPa" }\n',
+)
 
 
 def power_law(load, residual=0.0, factor=1e8):
