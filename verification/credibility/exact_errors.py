@@ -146,7 +146,7 @@ def _deflection_error(problem: CoatedContact, exact: HankelField) -> float:
     return float(np.abs(u[i, j] - normal.displacement(grid.x[i], grid.x[j], 0 * grid.x[i])[2]).max())
 
 
-def _under_patches(problem: CoatedContact, exact: HankelField) -> tuple[Any, Array, Any]:
+def _under_patches(problem: CoatedContact, exact: HankelField) -> tuple[Any, Any, Any]:
     """The grid over the disc, the mean pressure of each patch, and the solid, as the method takes them."""
     from semianalytic.inputs import Body
     from semianalytic.patches import prescribed

@@ -292,9 +292,10 @@ def parse_study(raw: bytes, path: Path) -> Study:
     except ValueError as error:
         raise CaseError(f"{path}: coating: {error}") from None
     refuse_unfit_scales(path, replace(bare, coatings=around["held"], ball=around["ball"]))
-    values = sweep.thickness or sweep.thickness_over_a_h or []
-    if isinstance(values, Range):
-        values = thicknesses_between(values.start, values.to, values.count)
+    given = sweep.thickness or sweep.thickness_over_a_h or []
+    if isinstance(given, Range):
+        given = list(thicknesses_between(given.start, given.to, given.count))
+    values = tuple(value * (1.0 if sweep.thickness else bare.a_h) for value in given)
     study = Study(
         name=path.stem,
         title=checked.title,
@@ -303,7 +304,7 @@ def parse_study(raw: bytes, path: Path) -> Study:
         substrate=substrate,
         coating_nu=p.varied.nu,
         moduli=tuple(moduli),
-        thicknesses=tuple(value * (1.0 if sweep.thickness else bare.a_h) for value in values),
+        thicknesses=values,
         frictions=tuple(sweep.friction),
         loads=(sweep.load.start, sweep.load.to, sweep.load.count) if sweep.load else None,
         residual=residual if any(residual) else (),
