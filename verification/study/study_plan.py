@@ -376,7 +376,7 @@ def _refuse_beyond_range(path: Path, study: Study, key: str) -> None:
 
 
 def _warnings(study: Study, p: _SweptProblem, criteria: Criteria) -> tuple[str, ...]:
-    """Those of the thinnest coating and of the thickest, each line once; of strengths; of residual stress."""
+    """Warnings of the thinnest coating and the thickest, each once; of strengths and of residual stress."""
     E = p.modulus or p.substrate.E  # a ratio has no unit
     found = [
         line.replace("coating 1, ", "coating, ")

@@ -88,7 +88,7 @@ def layer_table(result: CaseResult, body: str = FLAT) -> Table:
 
 
 def _stated(result: CaseResult, body: str) -> dict[str, list[Any]]:
-    """What a case states of each layer of a body beside its problem, by heads of columns."""
+    """Statements of a case on each layer of a body beside its problem, by heads of columns."""
     known, count = result.stated, len(layers(result.problem, body))
     sublayers = [*(known.get("layers", {}).get(body) or [1] * (count - 1)), 1]
     coating = [i for i, n in enumerate(sublayers) for _ in range(n)]  # that each layer belongs to
