@@ -3,29 +3,26 @@
 from collections.abc import Mapping
 from typing import Any
 
+from case_texts import study_text
+
 from verification.sources.references.hertz import Hertz
+from verification.study.study_point import problem_of
 
 FAILING = 7e-5  # m; a coating of this thickness has no solution here
 
-STUDY = """
-title = "Made up"
-[problem]
-radius = 10e-3
-load = 20.0
-substrate = { E = 210e9, nu = 0.3 }
-coating = { nu = 0.25 }
-[sweep]
-modulus_ratio = [0.5, 2.0]
-thickness = [2e-5, 4e-5, 8e-5]
-friction = [0.0, 0.25]
-cross_check = 5
-"""
+STUDY = study_text(
+    "coating = { nu = 0.25 }",
+    sweep="modulus_ratio = [0.5, 2.0]; thickness = [2e-5, 4e-5, 8e-5]; friction = [0.0, 0.25]; "
+    "cross_check = 5",
+    title="Made up",
+)
 
 
 def made_up(request: Mapping[str, Any]) -> dict[str, Any]:
     """Hertz on the coating's material."""
-    E, nu, thickness = request["coating"]
-    hertz = Hertz(request["radius"], request["load"], E, nu)
+    problem = problem_of(request, 0.0)
+    ((E, nu, thickness),) = problem.coatings
+    hertz = Hertz(problem.radius, problem.load, E, nu)
     rows = [
         {"friction": f, "status": "failed", "failure": "no such thickness"}
         if thickness == FAILING

@@ -124,29 +124,30 @@ def _numbers(problem: CoatedContact) -> Iterator[str]:
             if not low <= E <= MODULI[1]:
                 which = f"below {prefixed(low, 'Pa')}" if low > E else "above 2 TPa"
                 yield f"{key} = {prefixed(E, 'Pa')} is {which}" + _slip(key, E, _MODULUS_UNITS, USUAL_MODULI)
-        for i, (_, _, h) in enumerate(seen.coatings):
-            key = spoken(f"{of}coatings.{i}.thickness")
-            slip = _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
-            if h > max(problem.radius, COATING):
-                sizes = prefixed(h, "m"), prefixed(problem.radius, "m")
-                yield "{} = {} is beyond the radius of the ball, {}".format(key, *sizes) + slip
+    for key, h, slip in _thicknesses(problem):
+        if h > max(problem.radius, COATING):
+            sizes = prefixed(h, "m"), prefixed(problem.radius, "m")
+            yield "{} = {} is beyond the radius of the ball, {}".format(key, *sizes) + slip
+
+
+def _thicknesses(problem: CoatedContact) -> Iterator[tuple[str, float, str]]:
+    """Key and thickness [m] of each coating, with what it looks like."""
+    for body in problem.bodies:
+        for i, (_, _, h) in enumerate(problem.seen_from(body).coatings):
+            key = spoken(f"{before(body)}coatings.{i}.thickness")
+            yield key, h, _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
 
 
 def _thick(problem: CoatedContact) -> Iterator[str]:
     """Lines for coatings below which nothing takes part in the contact."""
     # before it is refused a contact may be of any size, and of none
     a = own_radius(problem) if 0 < problem.a_h < float("inf") else sys.float_info.min
-    units = Units.of_contact(problem, a)
-    for body in problem.bodies:
-        for i, (_, _, h) in enumerate(problem.seen_from(body).coatings):
-            key = spoken(f"{before(body)}coatings.{i}.thickness")
-            if h > max(problem.radius, COATING) or h <= min(THICKEST * a, COATING):
-                continue
+    for key, h, slip in _thicknesses(problem):
+        if min(THICKEST * a, COATING) < h <= max(problem.radius, COATING):
             reason = f"is {h / a:.3g} contact radii; what lies below has no part"
             if h <= THICKEST * a:
                 reason = f"is above {prefixed(COATING, 'm')}, thick for a coating"
-            slip = _slip(key, h, _LENGTH_UNITS, USUAL_THICKNESSES)
-            yield f"{key} = {units.shown_length(h)} {reason}" + slip
+            yield f"{key} = {Units.of_contact(problem, a).shown_length(h)} {reason}" + slip
 
 
 def _order(problem: CoatedContact) -> Iterator[str]:

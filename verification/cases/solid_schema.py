@@ -9,7 +9,6 @@ from verification.cases.graded_coating import LAYERS, Graded, Modulus, moduli
 from verification.cases.toml_file import Poisson, Positive, Strict
 from verification.cases.unit_numbers import AnyPascals, Metres, Pascals, is_of
 from verification.problem.array_types import Ball, Coatings
-from verification.problem.point_answers import BALL
 
 Expansion = Annotated[float, Field(ge=-1e-3, le=1e-3)]
 TemperatureChange = Annotated[float, Field(ge=-5000, le=5000)]
@@ -157,10 +156,6 @@ class BallEntry(Material):
     """An elastic ball; its coatings from its surface inwards."""
 
     coatings: WholeCoatings = Field(default_factory=list)
-
-    def all_limits(self) -> dict[str, float]:
-        """Hardness and yield strength [Pa] of the ball with its coatings, by their keys."""
-        return self.limits(BALL) | limits_of(self.coatings, f"{BALL}.coatings")
 
     @property
     def bare(self) -> Ball:

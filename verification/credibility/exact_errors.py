@@ -118,15 +118,10 @@ def _patch_error(problem: CoatedContact, exact: HankelField) -> float:
 
     They are summed over the patches, as under a rough indenter, in place of rings around each point.
     """
-    from semianalytic.inputs import Body
-    from semianalytic.patches import prescribed
-    from semianalytic.patches.grid import Grid
     from semianalytic.stresses import patch_field
 
+    grid, mean, body = _under_patches(problem, exact)
     a = exact.pressure.a
-    grid = Grid(PATCHES, 2.04 * a / PATCHES)
-    mean = prescribed.patch_mean(prescribed.Prescribed(a, exact.pressure.pressure), grid.x, grid.d)
-    body = Body(problem.coatings, problem.substrate, problem.friction, None)
     x, z = np.meshgrid(a * INSIDE, grid.d * np.array([0.5, 2.0]))
     y = np.full(x.shape, 0.13 * a)
     found = patch_field.stress(x, y, z, 0, grid_x=grid.x, pressure=mean, body=body)
@@ -139,21 +134,28 @@ def _deflection_error(problem: CoatedContact, exact: HankelField) -> float:
     Influence coefficients and DC-FFT alone, off the edge, where constant patches are of third order.
     """
     from semianalytic.coefficients import influence
-    from semianalytic.inputs import Body, Numerics
+    from semianalytic.inputs import Numerics
     from semianalytic.patches import convolution, prescribed
-    from semianalytic.patches.grid import Grid
 
-    a = exact.pressure.a
-    grid = Grid(PATCHES, 2.04 * a / PATCHES, quarter=True)
-    K = influence.surface_coefficients(
-        PATCHES, grid.d, Body(problem.coatings, problem.substrate, 0.0, None), Numerics()
-    )
-    x = Grid(PATCHES, grid.d).x
-    mean = prescribed.patch_mean(prescribed.Prescribed(a, exact.pressure.pressure), x, grid.d)
+    whole, mean, body = _under_patches(replace(problem, friction=0.0), exact)
+    grid = replace(whole, quarter=True)
+    K = influence.surface_coefficients(PATCHES, grid.d, body, Numerics())
     u = convolution.even_convolution(K, quarter=True)(grid.held(prescribed.deconvolve(mean)).copy())
     i, j = (np.array(QUARTER) * (len(grid.x) - 1)).astype(int)
     normal = HankelField(exact.pressure, problem.coatings, problem.substrate, 0.0)
     return float(np.abs(u[i, j] - normal.displacement(grid.x[i], grid.x[j], 0 * grid.x[i])[2]).max())
+
+
+def _under_patches(problem: CoatedContact, exact: HankelField) -> tuple[Any, Any, Any]:
+    """The grid over the disc, the mean pressure of each patch, and the solid, as the method takes them."""
+    from semianalytic.inputs import Body
+    from semianalytic.patches import prescribed
+    from semianalytic.patches.grid import Grid
+
+    a = exact.pressure.a
+    grid = Grid(PATCHES, 2.04 * a / PATCHES)
+    mean = prescribed.patch_mean(prescribed.Prescribed(a, exact.pressure.pressure), grid.x, grid.d)
+    return grid, mean, Body(problem.coatings, problem.substrate, problem.friction, None)
 
 
 def convolution_errors(problem: CoatedContact, solid: str) -> list[ExactError]:

@@ -238,22 +238,6 @@ def _day(when: str) -> str:
     return datetime.fromisoformat(when).date().isoformat()
 
 
-_ALL: tuple[Callable[[], str], ...] = (
-    headline,
-    totals,
-    zones,
-    published_counts,
-    quantities,
-    sources,
-    invariants,
-    fault_score,
-    false_alarms,
-    real_guests,
-    citation,
-    history,
-    solved,
-    line_limit,
-    enclosures,
-    assumption_costs,
-)
-BLOCKS: dict[str, Callable[[], str]] = {block.__name__: block for block in _ALL} | QUESTIONS
+_COUNTS = (headline, totals, zones, published_counts, invariants, fault_score, false_alarms, enclosures)
+_TEXTS = (quantities, sources, real_guests, citation, history, solved, line_limit, assumption_costs)
+BLOCKS: dict[str, Callable[[], str]] = {one.__name__: one for one in _COUNTS + _TEXTS} | QUESTIONS

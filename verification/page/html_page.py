@@ -16,8 +16,8 @@ HTML = Path(__file__).parent / "html"
 
 
 @cache
-def _environment(folder: Path) -> Environment:
-    """One for all pages of a ``folder``, so that each template is compiled once."""
+def environment(folder: Path) -> Environment:
+    """Templates of a ``folder`` and of this room, each compiled once."""
     made = Environment(
         loader=FileSystemLoader([folder, HTML]),
         autoescape=True,
@@ -37,7 +37,7 @@ def rendered(template: str, folder: Path = HTML, **content: object) -> str:
     """
     script = (HTML / "script.js").read_text(encoding="utf-8")
     return (
-        _environment(folder)
+        environment(folder)
         .get_template(template)
         .render(
             content,

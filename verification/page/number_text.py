@@ -6,7 +6,8 @@ from typing import Any
 
 from markupsafe import Markup
 
-_PREFIXES = {-15: "f", -12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+from verification.problem.display_units import prefix_of
+
 MOST_DIGITS = 9
 
 
@@ -97,12 +98,8 @@ def _number(value: Any) -> float | None:
 
 
 def _prefix(number: float) -> tuple[float, str]:
-    if number == 0:
-        return 1.0, ""
-    # The nudge keeps 1000 from being read as 999.99... thousand.
-    power = 3 * floor((log10(abs(number)) + 1e-9) / 3)
-    power = min(max(power, min(_PREFIXES)), max(_PREFIXES))
-    return 10.0**power, _PREFIXES[power]
+    factor, letter = prefix_of(number) if number else (1.0, "")
+    return factor, letter.replace("u", "µ")
 
 
 def _minus(text: str) -> str:

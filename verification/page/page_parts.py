@@ -124,12 +124,17 @@ def table_of(
 
 @dataclass(frozen=True)
 class Panel:
-    """One drawn quantity: ``title`` with its scale, the figure, what a reader should look at."""
+    """One drawn quantity: ``title`` with its scale, the figure, what a reader should look at.
+
+    csv, file : the numbers behind it and the name of their file, where they are not those of its gallery.
+    """
 
     title: str
     figure: Markup
     note: str = ""
     css: str = ""
+    csv: str = ""
+    file: str = ""
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from math import floor, log10, pi
 
 from verification.problem.coated_contact import CoatedContact
 
-_PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
+_PREFIXES = {-15: "f", -12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,15 @@ class Units:
 
 def prefixed(value: float, unit: str, digits: int = 4) -> str:
     """A positive number in SI with a prefix: 4.2e11, "Pa" is "420 GPa"; plain letters."""
+    factor, letter = prefix_of(value)
+    return f"{value / factor:.{digits}g} {letter}{unit}"
+
+
+def prefix_of(value: float) -> tuple[float, str]:
+    """Size and letter of the prefix of a number that is not 0."""
     # The nudge keeps 1000 from being shown as 999.99... thousand.
-    power = min(max(3 * floor((log10(value) + 1e-9) / 3), min(_PREFIXES)), max(_PREFIXES))
-    return f"{value / 10.0**power:.{digits}g} {_PREFIXES[power]}{unit}"
+    power = min(max(3 * floor((log10(abs(value)) + 1e-9) / 3), min(_PREFIXES)), max(_PREFIXES))
+    return 10.0**power, _PREFIXES[power]
 
 
 def radii_text(problem: CoatedContact) -> str:

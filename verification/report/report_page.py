@@ -19,6 +19,7 @@ from verification.regression import baseline_section
 from verification.regression.baseline_change import regression_json
 from verification.report.credibility import credibility_statement, detection_sections, model_section
 from verification.report.report_material import ReportMaterial
+from verification.report.report_words import HTML
 from verification.report.sections import (
     accuracy_section,
     first_page,
@@ -36,7 +37,6 @@ from verification.validation.measured_modulus import data_sets, described
 
 # Of more cases each page is compressed until it is opened: a report of hundreds stays small.
 MOST_UNPACKED = 60
-HTML = Path(__file__).parent / "html"
 
 
 def _dated(section: Section | None, *, older: bool) -> Section | None:

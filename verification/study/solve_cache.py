@@ -30,6 +30,7 @@ _SEARCH = (
     "verification.sampling.largest_tension",
     "verification.judging.invariants.companion_uncertainty",
     "verification.running.case_result",
+    "verification.running.json_records",
     "verification.running.slicing",
 )
 _DIGITS = ("python", "numpy", "scipy", "ducc0", "scikit-fem", "gmsh", "mkl")

@@ -1,6 +1,6 @@
 """The plan of a study: its TOML file as a sequence of solves."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import product
@@ -20,7 +20,7 @@ from verification.problem.array_types import Ball, Coatings
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.indenter_shape import Indenter
 from verification.problem.point_answers import FLAT
-from verification.running.json_records import plain
+from verification.running.json_records import encode
 from verification.sources.load_of_approach import own_radius
 from verification.sources.source_registry import METHODS
 from verification.study.choice.failure_criteria import Criteria
@@ -64,8 +64,8 @@ class Study:
     loads : smallest and largest [N], number for each thickness; None for ``load`` alone.
     asked_from : smallest load of the file, where ``loads`` were extended below it.
     held : fixed coatings, the first ``swept`` of them above the swept one.
-    halved : those and the ball with half of the sub-layers of graded coatings, whose change is part of every
-    uncertainty; {} where none is graded.
+    halved : this study with half of the sub-layers of graded coatings, whose change is part of every
+    uncertainty; None where none is graded.
     residual : stress [Pa] of the coating of each modulus, () for none.
     cross_check : every point whose number is a multiple is also solved by the other sources; 0 none.
     ball : None is rigid, or as of CoatedContact.   indenter : an ellipsoid in place of the sphere, likewise.
@@ -91,7 +91,7 @@ class Study:
     indenter: Indenter | None = None
     held: Coatings = ()
     swept: int = 0
-    halved: dict[str, Any] = field(default_factory=dict)
+    halved: "Study | None" = None
     cross_check: int = 10
     numerics: dict[str, dict[str, Any]] = field(default_factory=dict)
     criteria: Criteria = field(default_factory=Criteria)
@@ -150,19 +150,22 @@ class Study:
                 request = {
                     "source": source,
                     "numerics": self.numerics.get(source, {}),
-                    "radius": self.radius,
-                    "load": load,
-                    "coating": [E, self.coating_nu, thickness],
-                    **({"held": plain(self.held), "swept": self.swept} if self.held else {}),
+                    **self._solid(E, thickness, load),
                     "residual": residual,
-                    "substrate": list(self.substrate),
-                    "ball": plain(self.ball),
                     "frictions": list(self.frictions),
-                    **({"halved": self.halved} if self.halved else {}),
-                    **({"indenter": plain(self.indenter)} if self.indenter else {}),
+                    **({"halved": self.halved._solid(E, thickness, load)} if self.halved else {}),
                 }
                 yield Solve(first, request, places)
             first += step
+
+    def contact(self, E: float, thickness: float, load: float) -> CoatedContact:
+        """The contact whose swept coating has the modulus ``E`` [Pa] and a ``thickness`` [m]."""
+        above, below = self.held[: self.swept], self.held[self.swept :]
+        return replace(self.bare, load=load, coatings=(*above, (E, self.coating_nu, thickness), *below))
+
+    def _solid(self, E: float, thickness: float, load: float) -> dict[str, Any]:
+        """A contact as a request states it."""
+        return {"problem": encode(self.contact(E, thickness, load)), "swept": self.swept}
 
 
 class _SweptProblem(Sized):
@@ -205,19 +208,12 @@ class _SweptProblem(Sized):
         """The coating that is swept."""
         return self.coating or self.coatings[self.swept]
 
-    def limits(self) -> dict[str, float]:
-        """Hardness and yield strength [Pa] of every material that has one, by their keys."""
-        layers = {"substrate": self.substrate} | {f"coatings.{i}": one for i, one in enumerate(self.coatings)}
-        layers |= {"coating": self.coating} if self.coating else {}
-        found = {key: value for name, one in layers.items() for key, value in one.limits(name).items()}
-        return found | (self.ball.all_limits() if self.ball else {})
-
-    def names(self) -> dict[str, str]:
-        """The names that are given, by the keys of their layers."""
-        layers: dict[str, Limited | None] = {"substrate": self.substrate, "coating": self.coating}
-        layers |= {f"coatings.{i}": one for i, one in enumerate(self.coatings)} | {"ball": self.ball}
-        layers |= {f"ball.coatings.{i}": one for i, one in enumerate(self.ball.coatings if self.ball else [])}
-        return {key: one.name for key, one in layers.items() if one is not None and one.name}
+    @property
+    def materials(self) -> dict[str, Limited]:
+        """Every material by its key."""
+        flat = {"coating": self.coating} if self.coating else _numbered("coatings", self.coatings)
+        ball = {"ball": self.ball, **_numbered("ball.coatings", self.ball.coatings)} if self.ball else {}
+        return {"substrate": self.substrate, **flat, **ball}
 
     @property
     def modulus(self) -> float | None:
@@ -239,6 +235,10 @@ class _SweptProblem(Sized):
     def graded(self) -> bool:
         """Whether a coating beside the swept one is graded."""
         return any(one.layers for one in (*self.coatings, *(self.ball.coatings if self.ball else ())))
+
+
+def _numbered(key: str, some: Sequence[Limited]) -> dict[str, Limited]:
+    return {f"{key}.{i}": one for i, one in enumerate(some)}
 
 
 class _Semianalytic(Strict):
@@ -270,82 +270,46 @@ def parse_study(raw: bytes, path: Path) -> Study:
     """Check the content of a study file; ``path`` names it in messages. Raises CaseError."""
     text, checked = read_toml(raw, path, _StudyFile)
     p, sweep = checked.problem, checked.sweep
+    limits = {key: value for name, one in p.materials.items() for key, value in one.limits(name).items()}
     try:
-        criteria = checked.criteria.with_yield_strengths(limits := p.limits())
+        criteria = checked.criteria.with_yield_strengths(limits)
     except ValueError as error:
         raise CaseError(f"{path}: problem.{error}") from None
-    coatings = p.ball.coatings if p.ball else []
-    if any(one.expansion for one in (p.ball, *coatings) if one) or any(c.residual_stress for c in coatings):
-        raise CaseError(f"{path}: ball: leave residual, expansion out, for no stress of the ball is judged")
-    if p.varied.expansion is None and (p.substrate.expansion, p.temperature_change) != (None, None):
-        key = "temperature_change" if p.substrate.expansion is None else "substrate.expansion"
-        raise CaseError(f"{path}: {key}: acts on no coating; give the expansion of the swept one")
-    if (p.load is None) == (sweep.load is None):
-        raise CaseError(f"{path}: needs exactly one of load or sweep.load")
-    if sweep.load is not None and len(p.coatings) > 1:
-        raise CaseError(f"{path}: sweep.load: not with several coatings; sweep the thickness of one")
-    if sweep.load is not None and coatings:
-        raise CaseError(f"{path}: sweep.load: not with coatings on the ball, whose h/a_h varies too")
-    load = p.load if p.load is not None else sweep.load.to  # type: ignore[union-attr]
+    for reason in _unfit(p, sweep):
+        raise CaseError(f"{path}: {reason}")
+    load = sweep.load.to if sweep.load else p.load or 0.0
     try:
-        substrate = (p.substrate.E, p.substrate.nu)
         ball, indenter = p.ball.bare if p.ball else None, p.indenter.pair if p.indenter else None
+        substrate = (p.substrate.E, p.substrate.nu)
         bare = CoatedContact(p.size, load, (), substrate, ball=ball, indenter=indenter)
         around = p.held(bare.a_h)
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from None
-    if (p.modulus is None) == (sweep.modulus_ratio is None):
-        raise CaseError(f"{path}: needs exactly one of the coating's E or sweep.modulus_ratio, E1/E2")
     moduli = [p.modulus] if p.modulus else [r * p.substrate.E for r in sweep.modulus_ratio or ()]
     try:
         below = p.substrate.expansion
         residual = tuple(p.varied.residual(E, p.varied.nu, below, p.temperature_change) for E in moduli)
     except ValueError as error:
         raise CaseError(f"{path}: coating: {error}") from None
-    held, swept, ball = around.values()
-    refuse_unfit_scales(path, replace(bare, coatings=held, ball=ball))
-    asked: list[float] | Range | None = sweep.thickness
-    key, scale = "thickness", 1.0
-    if asked is None:
-        key, scale, asked = "thickness_over_a_h", bare.a_h, sweep.thickness_over_a_h
-    assert asked is not None
-    values = thicknesses_between(asked.start, asked.to, asked.count) if isinstance(asked, Range) else asked
-    thicknesses = tuple(value * scale for value in values)
-
-    def first(*given: float) -> str:
-        coatings = tuple((moduli[0], p.varied.nu, h) for h in given)
-        slips = likely_slips(replace(bare, coatings=coatings, ball=ball)).replace("coating 1", "coating")
-        return f"{path}: {slips}; as it stands, " if slips else f"{path}: "
-
-    contacts = [bare, replace(bare, load=sweep.load.start)] if sweep.load else [bare]
-    ends = {min(thicknesses), max(thicknesses)}
-    for one, E, h in product(contacts, {min(moduli), max(moduli)}, sorted(ends)):
-        a = own_radius(replace(one, coatings=(*held[:swept], (E, p.varied.nu, h), *held[swept:]), ball=ball))
-        low, high = (bound * a for bound in SUPPORTED)
-        if not low <= h <= high:
-            shown = Units.of_contact(one, a).shown_length
-            raise CaseError(
-                f"{first(h)}sweep.{key}: value {thicknesses.index(h) + 1} is {shown(h)}; it must be "
-                f"{shown(low)} to {shown(high)}, {SUPPORTED[0]:g} to {SUPPORTED[1]:g} contact radii"
-            )
-    for E in moduli:
-        if not 1e-3 <= E / p.substrate.E <= 1e3:
-            raise CaseError(f"{first()}E1/E2 = {E / p.substrate.E:.3g}; a study supports 1e-3 to 1e3")
+    refuse_unfit_scales(path, replace(bare, coatings=around["held"], ball=around["ball"]))
+    given = sweep.thickness or sweep.thickness_over_a_h or []
+    if isinstance(given, Range):
+        given = list(thicknesses_between(given.start, given.to, given.count))
+    values = tuple(value * (1.0 if sweep.thickness else bare.a_h) for value in given)
     study = Study(
         name=path.stem,
         title=checked.title,
         radius=p.size,
         load=load,
-        substrate=bare.substrate,
+        substrate=substrate,
         coating_nu=p.varied.nu,
         moduli=tuple(moduli),
-        thicknesses=thicknesses,
+        thicknesses=values,
         frictions=tuple(sweep.friction),
         loads=(sweep.load.start, sweep.load.to, sweep.load.count) if sweep.load else None,
         residual=residual if any(residual) else (),
         **around,
         indenter=indenter,
-        halved=plain(p.held(bare.a_h, over=2)) if p.graded() else {},
         cross_check=sweep.cross_check,
         numerics={
             source: getattr(checked, source).model_dump(exclude_none=True)
@@ -356,34 +320,73 @@ def parse_study(raw: bytes, path: Path) -> Study:
         source=checked.source,
         text=text,
         hardness={key: value for key, value in limits.items() if key.endswith("hardness")},
-        names=p.names(),
-        warnings=(
-            *_warnings(bare, ball, thicknesses, checked),
-            *(
-                line.replace("coating 1", "coating")
-                for line in residual_warnings({FLAT: residual[:1]}, p.temperature_change)
-            ),
-        ),
+        names={key: one.name for key, one in p.materials.items() if one.name},
         units=units_of(checked),
     )
+    _refuse_beyond_range(path, study, "thickness" if sweep.thickness else "thickness_over_a_h")
+    halved = replace(study, **p.held(bare.a_h, over=2)) if p.graded() else None
+    return replace(study, halved=halved, warnings=_warnings(study, p, checked.criteria))
+
+
+def _unfit(p: _SweptProblem, sweep: Sweep) -> Iterator[str]:
+    """A message, with its key, on each pair of statements that do not go together."""
+    coatings = p.ball.coatings if p.ball else []
+    if any(one.expansion for one in (p.ball, *coatings) if one) or any(c.residual_stress for c in coatings):
+        yield "ball: leave residual, expansion out, for no stress of the ball is judged"
+    if p.varied.expansion is None and (p.substrate.expansion, p.temperature_change) != (None, None):
+        key = "temperature_change" if p.substrate.expansion is None else "substrate.expansion"
+        yield f"{key}: acts on no coating; give the expansion of the swept one"
+    if (p.load is None) == (sweep.load is None):
+        yield "needs exactly one of load or sweep.load"
+    if sweep.load is not None and len(p.coatings) > 1:
+        yield "sweep.load: not with several coatings; sweep the thickness of one"
+    if sweep.load is not None and coatings:
+        yield "sweep.load: not with coatings on the ball, whose h/a_h varies too"
+    if (p.modulus is None) == (sweep.modulus_ratio is None):
+        yield "needs exactly one of the coating's E or sweep.modulus_ratio, E1/E2"
+
+
+def _refuse_beyond_range(path: Path, study: Study, key: str) -> None:
+    """Raise CaseError for a thickness, a modulus or a number of points beyond what a study supports.
+
+    key : of the thicknesses.
+    """
+    ends, moduli = (min(study.thicknesses), max(study.thicknesses)), study.moduli
+
+    def first(*h: float) -> str:
+        coatings = tuple((moduli[0], study.coating_nu, one) for one in h)
+        slips = likely_slips(replace(study.bare, coatings=coatings)).replace("coating 1", "coating")
+        return f"{path}: {slips}; as it stands, " if slips else f"{path}: "
+
+    loads = [study.load, study.loads[0]] if study.loads else [study.load]
+    for load, E, h in product(loads, {min(moduli), max(moduli)}, dict.fromkeys(ends)):
+        contact = study.contact(E, h, load)
+        a = own_radius(contact)
+        low, high = (bound * a for bound in SUPPORTED)
+        if not low <= h <= high:
+            shown = Units.of_contact(contact, a).shown_length
+            raise CaseError(
+                f"{first(h)}sweep.{key}: value {study.thicknesses.index(h) + 1} is {shown(h)}; it must be "
+                f"{shown(low)} to {shown(high)}, {SUPPORTED[0]:g} to {SUPPORTED[1]:g} contact radii"
+            )
+    for ratio in (E / study.substrate[0] for E in moduli):
+        if not 1e-3 <= ratio <= 1e3:
+            raise CaseError(f"{first()}E1/E2 = {ratio:.3g}; a study supports 1e-3 to 1e3")
     if study.points > MOST_POINTS:
         raise CaseError(f"{path}: sweep: {study.points} points; a study has at most {MOST_POINTS}")
-    return study
 
 
-def _warnings(
-    bare: CoatedContact, ball: Ball | None, thicknesses: tuple[float, ...], checked: _StudyFile
-) -> tuple[str, ...]:
-    """Those of the thinnest coating and the thickest, each line once."""
-    p = checked.problem
+def _warnings(study: Study, p: _SweptProblem, criteria: Criteria) -> tuple[str, ...]:
+    """Warnings of the thinnest coating and the thickest, each once; of strengths and of residual stress."""
+    E = p.modulus or p.substrate.E  # a ratio has no unit
     found = [
         line.replace("coating 1, ", "coating, ")
-        # A ratio has no unit.
-        for E in ([p.modulus] if p.modulus else [p.substrate.E])
-        for h in (min(thicknesses), max(thicknesses))
-        for line in warnings_of(replace(bare, coatings=((E, p.varied.nu, h),), ball=ball))
+        for h in (min(study.thicknesses), max(study.thicknesses))
+        for line in warnings_of(replace(study.bare, coatings=((E, study.coating_nu, h),)))
     ]
-    return (*dict.fromkeys(found), *checked.criteria.warnings())
+    stresses = residual_warnings({FLAT: study.residual[:1]}, p.temperature_change)
+    told = (line.replace("coating 1", "coating") for line in stresses)
+    return (*dict.fromkeys(found), *criteria.warnings(), *told)
 
 
 def shipped_studies() -> dict[str, Path]:

@@ -15,6 +15,7 @@ from threadpoolctl import threadpool_limits
 
 from verification.problem.coated_contact import CoatedContact
 from verification.running.case_result import message_of
+from verification.running.json_records import decode
 from verification.running.provenance import versions
 from verification.running.slicing import sliced
 from verification.sampling.along_axis import AlongAxis
@@ -26,10 +27,8 @@ from verification.study.study_table import OVER, SCALARS, SCALES
 def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     """Solve ``request`` and find every quantity at each of its frictions.
 
-    request : source, numerics (its own keywords), frictions, radius, load, coating (E, nu, thickness), held
-    (fixed coatings, the first ``swept`` of them above it), residual (stresses of the coating [Pa]), substrate
-    (E, nu), ball (E, nu, coatings) unless it is rigid, halved (what differs with half of the sub-layers),
-    indenter (shape, numbers) unless it is a sphere.
+    request : source, numerics (its own keywords), problem (a CoatedContact), swept (number of the swept
+    coating), residual (its stresses [Pa]), frictions, halved (problem and swept, half of the sub-layers).
     Returns {"rows": [one dictionary for each residual stress, then friction], "seconds", "versions"}; a solve
     that fails leaves its message in every row.
     """
@@ -40,7 +39,7 @@ def answer(request: Mapping[str, Any]) -> dict[str, Any]:
     try:
         with threadpool_limits(1):  # the order of sums over threads changes the last digit
             solution = solvers()[request["source"]](problem, request["numerics"])
-            rows = _rows(solution, problem, frictions, request["residual"], request.get("swept", 0))
+            rows = _rows(solution, problem, frictions, request["residual"], request["swept"])
             if request.get("halved"):
                 rows = _sliced(rows, answer(halved_request(request))["rows"])
     except Exception as error:  # a point that fails is a row with its message
@@ -75,15 +74,7 @@ def failed_rows(request: Mapping[str, Any], message: str) -> list[dict[str, Any]
 
 def problem_of(request: Mapping[str, Any], friction: float) -> CoatedContact:
     """The contact of ``request`` at ``friction``."""
-    coating, substrate, ball = tuple(request["coating"]), tuple(request["substrate"]), request.get("ball")
-    if ball is not None:
-        E, nu, coatings = ball
-        ball = E, nu, tuple(tuple(layer) for layer in coatings)
-    held, swept = tuple(map(tuple, request.get("held", ()))), request.get("swept", 0)
-    coatings = (*held[:swept], coating, *held[swept:])
-    shape, radii = request.get("indenter") or (None, ())
-    indenter = (shape, tuple(radii)) if shape else None
-    return CoatedContact(request["radius"], request["load"], coatings, substrate, friction, ball, indenter)
+    return replace(decode(CoatedContact, request["problem"]), friction=friction)
 
 
 def table_rows(
@@ -98,9 +89,8 @@ def table_rows(
     places : (thickness [m], load [N]) of equal h/a_h. There stresses over p_h, positions over a_h and the
     approach over delta_h are the same: both bodies are half-spaces and the gap is a parabola.
     """
-    E1, nu1, thickness = request["coating"]
-    E2, nu2 = request["substrate"]
     solved = problem_of(request, 0.0)
+    (E1, nu1, thickness), (E2, nu2) = solved.coatings[request["swept"]], solved.substrate
     rows: list[dict[str, Any]] = []
     count = len(request["frictions"])
     for i, (h, load) in enumerate(places):
@@ -108,7 +98,7 @@ def table_rows(
         k = i if len(request["residual"]) > 1 else 0
         shared = {
             "source": request["source"],
-            "radius": request["radius"],
+            "radius": solved.radius,
             "load": load,
             "coating_E": E1,
             "coating_nu": nu1,
@@ -121,8 +111,8 @@ def table_rows(
             "a_h": bare.a_h,
             "p_h": bare.p_h,
             "delta_h": bare.delta_h,
-            "ball": json.dumps(request.get("ball")),
-            "indenter": json.dumps(request.get("indenter")),
+            "ball": json.dumps(solved.ball),
+            "indenter": json.dumps(solved.indenter),
             "numerics": json.dumps(request["numerics"], sort_keys=True),
             "versions": json.dumps(found["versions"], sort_keys=True),
             "key": key,

@@ -32,18 +32,23 @@ def thicknesses_between(low: float, high: float, count: int) -> tuple[float, ...
 Lengths = Annotated[list[Metres], Field(min_length=1, max_length=100_000)]
 
 
-class Range(Strict):
-    """A range {from, to, count}."""
+class Between(Strict):
+    """Anything between two positive values, {from, to}."""
 
     start: Annotated[Positive, Field(alias="from")]
     to: Positive
-    count: Annotated[int, Field(ge=1, le=100_000)]
 
     @model_validator(mode="after")
-    def _upwards(self) -> "Range":
+    def _upwards(self) -> "Between":
         if not self.start < self.to:
             raise ValueError(f"runs from {self.start:g} to {self.to:g}; give from < to")
         return self
+
+
+class Range(Between):
+    """A range {from, to, count}."""
+
+    count: Annotated[int, Field(ge=1, le=100_000)]
 
 
 class _Lengths(Range):

@@ -12,15 +12,14 @@ from numpy.typing import NDArray
 
 from verification.problem.array_types import Array
 from verification.study.largest_stresses import QUANTITIES
-from verification.study.study_table import SCALARS, SCALES, SOURCES
+from verification.study.study_table import SCALES, SOURCES
 
 
 @dataclass(frozen=True, eq=False)
 class ThicknessCurve:
     """Quantities over ``h``, the thickness over a_h, in increasing order; p_h [Pa], a_h and delta_h [m].
 
-    stress, uncertainty : each of QUANTITIES over p_h.
-    scalar : peak_pressure, contact_radius, approach over p_h, a_h, delta_h.
+    value : each of QUANTITIES over p_h, each of SCALARS over its scale.   uncertainty : of QUANTITIES.
     marks : by source, by quantity the (h, value) of cross-checked points.
     failures : (h, message) of points that could not be solved.
     """
@@ -31,16 +30,10 @@ class ThicknessCurve:
     a_h: float
     delta_h: float
     h: Array
-    stress: Mapping[str, Array]
+    value: Mapping[str, Array]
     uncertainty: Mapping[str, Array]
-    scalar: Mapping[str, Array]
     marks: Mapping[str, Mapping[str, tuple[Array, Array]]]
     failures: tuple[tuple[float, str], ...]
-
-    @property
-    def value(self) -> dict[str, Array]:
-        """Every stress and scalar, over its scale."""
-        return {**self.stress, **self.scalar}
 
     @property
     def label(self) -> str:
@@ -118,9 +111,8 @@ def _curve(columns: Mapping[str, NDArray[Any]], ratio: float, friction: float) -
         a_h,
         delta_h,
         take("thickness_over_a_h"),
-        {q: take(f"{q}_over_p_h") for q in QUANTITIES},
+        {q: take(f"{q}_over_{scale}") for q, scale in SCALES.items()},
         {q: take(f"{q}_uncertainty") / p_h for q in QUANTITIES},
-        {q: take(f"{q}_over_{scale}") for q, scale in SCALARS.items()},
         marks,
         tuple(
             (float(columns["thickness_over_a_h"][i]), str(columns["failure"][i]))

@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from case_texts import study_text
 from pydantic import BaseModel
 
 from verification.cases import case_file
@@ -235,16 +236,11 @@ def test_each_key_changes_what_a_command_works_with(key, command, capsys, monkey
     assert refused or first != second
 
 
-STUDY = """title = "Mine"
-[problem]
-radius = "5 mm"
-load = "20 N"
-substrate = { E = "210 GPa", nu = 0.3 }
-coating = { E = "300 GPa", nu = 0.25 }
-ball = { E = "310 GPa", nu = 0.27, coatings = [{ E = 2e11, nu = 0.25, thickness = 1e-6 }] }
-[sweep]
-thickness = ["2 um", "5 um"]
-"""
+STUDY = study_text(
+    'coating = { E = "300 GPa", nu = 0.25 }',
+    'ball = { E = "310 GPa", nu = 0.27, coatings = [{ E = 2e11, nu = 0.25, thickness = 1e-6 }] }',
+    sweep='thickness = ["2 um", "5 um"]',
+)
 COATING, HELD = "nu = 0.25 }\nball", "nu = 0.25 }]\nball"
 STACK = STUDY.replace("coating = {", "coatings = [{ nu = 0.2, E = 2e11, thickness = 1e-6 }, {").replace(
     COATING, HELD

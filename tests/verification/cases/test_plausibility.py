@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from case_texts import case_text
+from case_texts import case_text, study_text
 
 from verification.cases.case_file import parse_case, read_case, shipped_cases
 from verification.cases.plausibility import warnings_of
@@ -11,25 +11,19 @@ from verification.cases.toml_file import CaseError
 from verification.problem.coated_contact import CoatedContact
 from verification.study.study_plan import parse_study, read_study_file, shipped_studies
 
-CONTACT = CoatedContact(10e-3, 20.0, ((450e9, 0.22, 3e-6),), (210e9, 0.3))
 CASE = case_text(
     "E = {coating}; nu = 0.22; thickness = {thickness}",
     radius="{radius}",
     load="{load}",
     more="ball = {{ E = {ball}, nu = 0.27 }}",
 ).replace("{ E = 210e9, nu = 0.3 }", "{{ E = {E}, nu = 0.3{more} }}")
-STUDY = """
-title = "Mine"
-[problem]
-radius = {radius}
-load = {load}
-substrate = {{ E = {E}, nu = 0.3{more} }}
-coating = {{ E = {coating}, nu = 0.22 }}
-[sweep]
-thickness = [{thickness}]
-[criteria.strength]
-sigma_xx_surface = {strength}
-"""
+STUDY = study_text(
+    "coating = {{ E = {coating}, nu = 0.22 }}",
+    sweep="thickness = [{thickness}]",
+    radius="{radius}",
+    load="{load}",
+    tables="[criteria.strength]\nsigma_xx_surface = {strength}\n",
+).replace("{ E = 210e9, nu = 0.3 }", "{{ E = {E}, nu = 0.3{more} }}")
 GOOD = {
     "radius": "10e-3",
     "load": "20",

@@ -10,7 +10,7 @@ from synthetic_results import INFO, contact, result_of
 from verification.commands.common.known_folders import RECORDS
 from verification.credibility.model_error import LIMIT, Cost, ModelError, judged_quantities
 from verification.evidence.assumption_maps import read_maps
-from verification.report.credibility.model_section import LEVELS, section
+from verification.report.credibility.model_section import section
 from verification.report.report_material import Evidence, ReportMaterial
 from verification.report.report_page import render
 
@@ -32,21 +32,6 @@ def test_section_has_every_assumption_of_the_record(maps):
         assert one.title in shown.parts[0].text
     fewer = section(type(maps)(maps.maps[:1]))
     assert maps.maps[1].title in fewer.parts[0].text
-
-
-def test_reach_is_where_the_largest_change_has_the_level(maps):
-    sphere = maps.of("sphere")
-    widths = sphere.axes[sphere.driver].values
-    for quantity in range(len(sphere.quantities)):
-        reached = [sphere.reach(quantity, level) for level in LEVELS]
-        found = [value for value in reached if value is not None]
-        assert found == sorted(found)
-        at_node = sphere.reach(quantity, sphere.largest[quantity, 1])
-        assert at_node == pytest.approx(widths[1], rel=1e-9)
-        # a quarter of the change at half of the width
-        tiny = sphere.largest[quantity, 0]
-        assert sphere.reach(quantity, tiny / 4) == pytest.approx(widths[0] / 2)
-        assert sphere.reach(quantity, 1.1 * sphere.largest[quantity, -1]) is None
 
 
 def test_map_with_holes_is_told(maps):

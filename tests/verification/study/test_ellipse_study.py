@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from case_texts import study_text
 
 from verification.cases.toml_file import CaseError
 from verification.desk.contact_answer import answer as solved
@@ -12,28 +13,19 @@ from verification.study.study_plan import parse_study
 from verification.study.study_point import answer, problem_of, table_rows
 
 FAST = {"patches": 65, "estimate_uncertainty": False}
-TEXT = """
-title = "Ellipse"
-[problem]
-{indenter}
-load = 20.0
-substrate = {{ E = 210e9, nu = 0.3 }}
-coating = {{ E = 420e9, nu = 0.25 }}
-[sweep]
-thickness = [40e-6]
-friction = {frictions}
-[semianalytic]
-patches = 65
-estimate_uncertainty = false
-"""
+NUMERICS = "[semianalytic]\npatches = 65\nestimate_uncertainty = false\n"
 
 
-def study(indenter, frictions):
-    return parse_study(TEXT.format(indenter=indenter, frictions=frictions).encode(), Path("ellipse.toml"))
+def study(frictions, *indenter, radius=""):
+    given = (*indenter, "coating = { E = 420e9, nu = 0.25 }")
+    text = study_text(
+        *given, sweep=f"thickness = [40e-6]; friction = {frictions}", radius=radius, tables=NUMERICS
+    )
+    return parse_study(text.encode(), Path("ellipse.toml"))
 
 
 def ellipse(radii, frictions):
-    return study(f'indenter = {{ shape = "ellipsoid", radii = {list(radii)} }}', frictions)
+    return study(frictions, f'indenter = {{ shape = "ellipsoid", radii = {list(radii)} }}')
 
 
 def rows_of(found):
@@ -76,4 +68,4 @@ def test_the_forecast_knows_that_ellipses_take_longer(tmp_path):
 
 def test_indenters_that_are_no_ellipsoids_are_refused():
     with pytest.raises(CaseError, match="asperities"):
-        study('radius = 1e-2\nindenter = { shape = "asperities", distance = 1e-4 }', [0.0])
+        study([0.0], 'indenter = { shape = "asperities", distance = 1e-4 }', radius="1e-2")

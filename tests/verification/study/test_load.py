@@ -1,41 +1,35 @@
 """Critical loads: exact where h/a_h has no part, similarity of contacts, strengths that scatter."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import study_table
+from case_texts import study_text
 from synthetic_solves import STUDY
 
 from verification.problem.coated_contact import CoatedContact
+from verification.running.json_records import encode
 from verification.study.choice.critical_load import Critical, Ramp, critical, extended, ramps
 from verification.study.choice.failure_criteria import Criteria, Uniform
 from verification.study.largest_stresses import QUANTITIES
 from verification.study.pages.load_page import answers, write_load_report
 from verification.study.study_plan import parse_study
 from verification.study.study_point import answer, table_rows
-from verification.study.study_table import read_columns, write_table
+from verification.study.study_table import read_columns
 
 LOADS = STUDY.replace("load = 20.0", "").replace(
     "cross_check = 5", "cross_check = 0\nload = { from = 4, to = 30, count = 5 }"
 )
-EQUAL = """
-title = "Equal moduli"
-[problem]
-radius = 10e-3
-substrate = { E = 210e9, nu = 0.3 }
-coating = { E = 210e9, nu = 0.3 }
-[sweep]
-load = { from = 5.0, to = 80.0, count = 4 }
-thickness = [5e-5]
-friction = [0.0, 0.25]
-cross_check = 0
-[semianalytic]
-patches = 33
-estimate_uncertainty = false
-[criteria.strength]
-sigma_xx_surface = "1 GPa"
-von_mises_substrate = { from = "0.6 GPa", to = "0.9 GPa" }
-"""
+EQUAL = study_text(
+    "coating = { E = 210e9, nu = 0.3 }",
+    sweep="load = { from = 5.0, to = 80.0, count = 4 }; thickness = [5e-5]; friction = [0.0, 0.25]; "
+    "cross_check = 0",
+    load="",
+    tables="[semianalytic]\npatches = 33\nestimate_uncertainty = false\n[criteria.strength]\n"
+    'sigma_xx_surface = "1 GPa"\nvon_mises_substrate = { from = "0.6 GPa", to = "0.9 GPa" }\n',
+)
 
 
 def power_law(load, residual=0.0, factor=1e8):
@@ -75,14 +69,9 @@ def test_below_the_ramp_no_mode_is_the_first_of_several():
 
 
 def solved_table(text, path, study=None):
-    """The study of ``text`` with its table of closed forms at ``path``."""
-    study, rows = study or parse_study(text.encode(), path.with_suffix(".toml")), []
-    for one in study.solves():
-        made = [_closed(one.request, f) for f in one.request["frictions"]]
-        found = {"rows": made, "versions": {}, "seconds": 0.0}
-        rows += table_rows(one.first, one.key, one.request, found, one.places)
-    write_table(path, rows, {"name": path.stem, "text": text})
-    return study
+    """The study of ``text`` with its table at ``path``, of stresses that grow with friction alone."""
+    law = lambda quantity, ratio, h, f: 0.3 + f  # noqa: E731
+    return study_table.write(path, text=text, study=study, law=law)
 
 
 @pytest.mark.parametrize("begin", [5.0, 40.0, 70.0])
@@ -146,20 +135,16 @@ def test_equal_thickness_over_contact_radius_is_solved_once():
 
 
 def test_a_row_at_another_load_is_what_a_solve_of_its_own_gives():
-    coating, load = (420e9, 0.25, 4e-5), 20.0
+    own = CoatedContact(10e-3, 20.0, ((420e9, 0.25, 4e-5),), (210e9, 0.3))
     scale = 1.3
-    request = {
-        "source": "integral_equation", "numerics": {"estimate_uncertainty": False}, "radius": 10e-3,
-        "substrate": [210e9, 0.3], "ball": None,
-        "frictions": [0.2],
-    }  # fmt: skip
+    (E, nu, h), load = own.coatings[0], own.load / scale**3
+    first = replace(own, load=load, coatings=((E, nu, h / scale),))
     # the second place has h and a_h times 1.3; its residual stress over p_h is that of the request
-    places = ((coating[2] / scale, load / scale**3), (coating[2], load))
-    request |= {"load": places[0][1], "coating": [*coating[:2], places[0][0]]}
-    request |= {"residual": [-1e8, -1e8 / scale]}
-    rows = table_rows(0, "k", request, answer(request), places)
-    alone = request | {"load": load, "coating": list(coating), "residual": [-1e8]}
-    (own,) = table_rows(0, "k", alone, answer(alone), (places[1],))
+    asked = {"source": "integral_equation", "numerics": {"estimate_uncertainty": False}, "swept": 0}
+    asked |= {"frictions": [0.2], "problem": encode(first), "residual": [-1e8, -1e8 / scale]}
+    rows = table_rows(0, "k", asked, answer(asked), ((h / scale, load), (h, own.load)))
+    alone = asked | {"problem": encode(own), "residual": [-1e8]}
+    (own,) = table_rows(0, "k", alone, answer(alone), ((h, own.load),))
     for name in ("residual_stress", "a_h", "p_h", "peak_pressure", "contact_radius", "approach", *QUANTITIES):
         assert rows[1][name] == pytest.approx(own[name], rel=1e-7, abs=1.0), name
 
@@ -178,13 +163,3 @@ def test_report_of_a_load_study_answers_first(tmp_path):
     one = critical(ramp, study.criteria, study.loads[:2])
     assert isinstance(one, Critical)
     assert answers(study, [one])[0] == written.answer[0]
-
-
-def _closed(request, f):
-    contact = CoatedContact(request["radius"], request["load"], (), tuple(request["substrate"]))
-    row = {"friction": f, "status": "solved", "failure": None}
-    for name in QUANTITIES:
-        row |= {name: (0.3 + f) * contact.p_h, f"{name}_over_p_h": 0.3 + f, f"{name}_uncertainty": 0.0}
-        row |= {f"{name}_x": 0.0, f"{name}_z": 0.0}
-    scales = {"peak_pressure": "p_h", "contact_radius": "a_h", "approach": "delta_h"}
-    return row | {name: getattr(contact, scale) for name, scale in scales.items()}

@@ -58,8 +58,8 @@ def test_a_coating_in_two_halves_has_the_stresses_of_the_whole():
     """Both halves of one material: only stresses at the interface between them are more than before."""
     numerics = {"patches": 65, "estimate_uncertainty": False}
     (halves,) = study('{ E = "400 GPa", nu = 0.25 }, ' + HELD).solves()
-    coating = [400e9, 0.25, 4e-5]
-    whole = {k: v for k, v in halves.request.items() if k not in ("held", "swept")} | {"coating": coating}
+    contact = halves.request["problem"] | {"coatings": [[400e9, 0.25, 4e-5]]}
+    whole = halves.request | {"problem": contact}
     one, two = (answer(r | {"numerics": numerics})["rows"][-1] for r in (whole, halves.request))
     assert (one["status"], two["status"]) == ("solved", "solved")
     same = [q for q in QUANTITIES if q not in ("sigma_xx_base", "sigma_xz_interface", "sigma_zz_interface")]

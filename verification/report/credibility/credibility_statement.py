@@ -11,7 +11,7 @@ from verification.cases.drawn_ranges import FRICTION, MOST_COATINGS, POISSON, RA
 from verification.credibility.self_tests.known_verdicts import TEST
 from verification.evidence.alarm_record import DECADES, Campaign
 from verification.evidence.code_record import shared
-from verification.judging.verdict import Outcome
+from verification.judging.verdict import Outcome, Verdict
 from verification.page.number_text import plain
 from verification.page.page_parts import (
     Cell,
@@ -22,6 +22,7 @@ from verification.page.page_parts import (
     Table,
     number,
     outcome_cell,
+    row,
     table_of,
     tally,
     words,
@@ -79,30 +80,18 @@ def section(material: ReportMaterial, coverage: Table) -> Section | None:
 
 def _range_table(results: Sequence[CaseResult]) -> Table:
     solids = [(layers(one.problem), scale(one.problem, "a_h"), one.problem) for one in results]
-    found: list[tuple[str, list[float], Sequence[float]]] = [
-        (
-            "E of a coating over E of the substrate",
-            [E / s[-1][0] for s, _, _ in solids for E, *_ in s[:-1]],
-            RATIO,
-        ),
-        (
-            "h / a_h of a coating",
-            [float(h / a) for s, a, _ in solids for *_, h in s[:-1]],
-            (min(THINNEST, *THICKNESS), max(THICKNESS)),
-        ),
-        ("Poisson's ratio", [nu for s, _, _ in solids for _, nu, _ in s], POISSON),
-        ("friction f", [float(problem.get("friction", 0.0)) for *_, problem in solids], FRICTION),
-        ("coatings", [len(s) - 1.0 for s, _, _ in solids if s], (1.0, float(MOST_COATINGS))),
-    ]
-    return table_of(
-        "Ranges of the problems solved.",
-        found,
-        [
-            ("quantity", lambda one: one[0]),
-            ("this run", lambda one: _range(one[1])),
-            ("random problems", lambda one: _range(one[2])),
-        ],
-    )
+    ratios = [E / s[-1][0] for s, _, _ in solids for E, *_ in s[:-1]]
+    depths = [float(h / a) for s, a, _ in solids for *_, h in s[:-1]]
+    friction = [float(problem.get("friction", 0.0)) for *_, problem in solids]
+    found: dict[str, tuple[Sequence[float], Sequence[float]]] = {
+        "E of a coating over E of the substrate": (ratios, RATIO),
+        "h / a_h of a coating": (depths, (min(THINNEST, *THICKNESS), max(THICKNESS))),
+        "Poisson's ratio": ([nu for s, _, _ in solids for _, nu, _ in s], POISSON),
+        "friction f": (friction, FRICTION),
+        "coatings": ([len(s) - 1.0 for s, _, _ in solids if s], (1.0, float(MOST_COATINGS))),
+    }
+    rows = [row(name, _range(run), _range(drawn)) for name, (run, drawn) in found.items()]
+    return Table("Ranges of the problems solved.", ["quantity", "this run", "random problems"], rows)
 
 
 def _range(found: Sequence[float]) -> str:
@@ -131,21 +120,20 @@ def _design_table(evidence: Evidence) -> Table:
 
 
 def _pair_table(results: Sequence[CaseResult]) -> Table:
-    found = [(claim, verdict) for result in results for claim, verdict in result.verdicts]
-    pairs = {
-        pair: [v for c, v in found if c.between == pair]
-        for pair in dict.fromkeys(claim.between for claim, _ in found)
-    }
-    return table_of(
-        "All comparisons by pair of sources; differences and U as fractions of their scale.",
-        pairs.items(),
-        [
-            ("between", lambda one: pair_label(one[0])),
-            ("agree", lambda one: tally(sum(v.outcome is Outcome.AGREES for v in one[1]), len(one[1]))),
-            ("largest difference", lambda one: max((v.difference or 0.0 for v in one[1]), default=None)),
-            ("largest U", lambda one: max((v.uncertainty or 0.0 for v in one[1]), default=None)),
-        ],
-    )
+    by_pair: dict[tuple[str, str], list[Verdict]] = {}
+    for claim, verdict in (pair for result in results for pair in result.verdicts):
+        by_pair.setdefault(claim.between, []).append(verdict)
+    rows = [
+        row(
+            pair_label(pair),
+            tally(sum(one.outcome is Outcome.AGREES for one in of), len(of)),
+            max(one.difference or 0.0 for one in of),
+            max(one.uncertainty or 0.0 for one in of),
+        )
+        for pair, of in by_pair.items()
+    ]
+    caption = "All comparisons by pair of sources; differences and U as fractions of their scale."
+    return Table(caption, ["between", "agree", "largest difference", "largest U"], rows)
 
 
 def _import_table(evidence: Evidence) -> Table:

@@ -2,13 +2,12 @@
 
 from collections import Counter
 from collections.abc import Sequence
-from functools import partial
 
 from verification.credibility.self_tests import SelfTest
 from verification.evidence.fault_record import COLUMNS, GROUPS, Catch, FaultRow, Record
 from verification.evidence.first_notice import Noticed, by_place, noticed, score, unused
 from verification.page.number_text import scientific, seconds
-from verification.page.page_parts import Cell, Part, Section, Table, table_of, tally, words
+from verification.page.page_parts import Cell, Part, Section, Table, row, table_of, tally, words
 from verification.page.source_labels import source_label
 from verification.report.report_words import stated
 
@@ -70,17 +69,18 @@ def _score(record: Record) -> Table:
     counted = {name: (rows, Counter(map(noticed, rows))) for name, rows in by_place(record).items()}
     counted["all"] = list(record.rows), Counter(map(noticed, record.rows))
     kinds = [kind for kind in Noticed if counted["all"][1][kind]]
-    return table_of(
-        stated("noticed"),
-        counted.items(),
-        [
-            ("in", lambda one: one[0]),
-            ("faults", lambda one: len(one[1][0])),
-            *((str(kind), partial(lambda kind, one: one[1][1][kind], kind)) for kind in kinds),
-            ("detected", lambda one: tally(sum(row.caught for row in one[1][0]), len(one[1][0]))),
-            ("predicted check", lambda one: sum(row.as_predicted for row in one[1][0])),
-        ],
-    )
+    rows = [
+        row(
+            place,
+            len(faults),
+            *(found[kind] for kind in kinds),
+            tally(sum(one.caught for one in faults), len(faults)),
+            sum(one.as_predicted for one in faults),
+        )
+        for place, (faults, found) in counted.items()
+    ]
+    heads = ["in", "faults", *map(str, kinds), "detected", "predicted check"]
+    return Table(stated("noticed"), heads, rows)
 
 
 def _survivors(record: Record) -> Table:

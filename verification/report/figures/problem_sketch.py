@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from math import isfinite, log, sqrt
-from pathlib import Path
 from typing import Any
 
 from markupsafe import Markup
@@ -10,9 +9,9 @@ from markupsafe import Markup
 from verification.page.html_page import rendered
 from verification.page.number_text import engineering, plain
 from verification.problem.point_answers import BALL
+from verification.report.report_words import HTML
 from verification.report.tables.case_lookup import INDENTERS, layers, scale
 
-HTML = Path(__file__).parents[1] / "html"
 HEIGHT, BLOCK, SURFACE = 250.0, 216.0, 92.0  # of the drawing; width of the solid, its top; drawing units
 THINNEST, STEP = 4.0, 44.0  # a layer at least, a label
 SHALLOWEST, DEEPEST = 1.6, 4.0  # over a_h

@@ -6,19 +6,24 @@ then of U: the bars of a strip make a tinted area, and a dot outside that area d
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from math import ceil, floor, isfinite, log10
 from typing import Any
 
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
 from verification.judging.verdict import Claim, Outcome, Verdict
+from verification.page.html_page import environment
 from verification.page.source_labels import OUTCOMES
-from verification.page.symbol_text import drawn, unicode
+from verification.page.symbol_text import drawn
+from verification.report.report_words import HTML
 
 WIDTH, HEIGHT = 560.0, 22.0
 INSET = 2.0  # of the lanes from the edges of a strip
 LOWEST = 1e-12  # a smaller difference is drawn at the left edge
 FEWEST = 4  # decades of the axis
+# A dot where it agrees, a cross where it disagrees, an open square where it is inconclusive.
+SHAPES, SQUARE = {Outcome.AGREES: "h0", Outcome.DISAGREES: "m-3-3l6 6m0-6l-6 6"}, "m-2.5-2.5h5v5h-5z"
 
 
 @dataclass(frozen=True)
@@ -104,27 +109,33 @@ def draw_strip(items: Sequence[Item], axis: Axis, label: str, anchor: str = "") 
     """
     lanes = ordered(items)
     lane = (HEIGHT - 2 * INSET) / max(len(lanes), 1)
-    middles = [INSET + lane * (n + 0.5) for n in range(len(lanes))]
-    decades = "".join(f"M{axis.place(10.0**n):.1f} 0v{HEIGHT:g}" for n in range(axis.low, axis.high + 1))
-    parts = [f'<path d="{decades}" class="s-grid" stroke-width=".8"/>', _bars(lanes, lane, axis)]
-    parts.append(f'<path d="{_caps(lanes, lane, axis)}" class="s-cap" stroke-width="1.3"/>')
-    for outcome in reversed(OUTCOMES):
-        found = [
-            (axis.place(item.difference), y)
-            for item, y in zip(lanes, middles, strict=True)
-            if item.verdict.outcome is outcome and item.difference is not None
-        ]
-        parts.append(_marks(outcome, found))
+    tops = [INSET + lane * n for n in range(len(lanes))]
+    places = [
+        None if item.difference is None else (axis.place(item.difference), top + lane / 2)
+        for item, top in zip(lanes, tops, strict=True)
+    ]
+    numbered = list(zip(lanes, tops, places, strict=True))
     first = worst(lanes)
-    if first is not None and first.difference is not None:
-        x, y = axis.place(first.difference), middles[lanes.index(first)]
-        parts.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" class="ring s-ink" stroke-width="1.1"/>')
-    of = f' data-of="{escape(anchor)}"' if anchor else ""
-    return Markup(
-        f'<svg class="strip" viewBox="-3 0 {WIDTH + 6:g} {HEIGHT:g}" role="img" '
-        f'aria-label="{escape(unicode(label))}" data-low="{axis.low}" data-high="{axis.high}"{of}>'
-        f"{''.join(parts)}</svg>"
-    )
+    runs = [list(run) for _, run in groupby(numbered, key=lambda one: one[0].claim.cap)]
+    content = {
+        "label": label,
+        "anchor": anchor,
+        "axis": axis,
+        "lane": lane,
+        "bars": [(axis.place(one.uncertainty) if one.uncertainty else 0.0, top) for one, top, _ in numbered],
+        # (x, y, height) of each cap over the lanes that share it
+        "caps": [
+            (axis.place(cap), run[0][1], lane * len(run)) for run in runs if (cap := run[0][0].claim.cap) > 0
+        ],
+        "marks": [
+            (OUTCOMES[kind].css, SHAPES.get(kind, SQUARE), of)
+            for kind in reversed(OUTCOMES)
+            if (of := [at for one, _, at in numbered if one.verdict.outcome is kind and at])
+        ],
+        "ring": places[lanes.index(first)] if first else None,
+    }
+    template = environment(HTML).get_template("strip.html")
+    return Markup(template.render(content, width=WIDTH, height=HEIGHT, inset=INSET))
 
 
 def draw_axis(axis: Axis) -> Markup:
@@ -139,36 +150,3 @@ def draw_axis(axis: Axis) -> Markup:
     return Markup(
         f'<svg class="strip scale" viewBox="-14 0 {WIDTH + 28:g} 16" aria-hidden="true">{texts}</svg>'
     )
-
-
-def _bars(lanes: Sequence[Item], lane: float, axis: Axis) -> str:
-    """The area of all bars of U, from the left edge."""
-    corners = []
-    for n, item in enumerate(lanes):
-        x = axis.place(item.uncertainty) if item.uncertainty else 0.0
-        corners += [(x, INSET + lane * n), (x, INSET + lane * (n + 1))]
-    if not corners:
-        return ""
-    outline = "L".join(f"{x:.1f} {y:.2f}" for x, y in corners)
-    return f'<path d="M0 {INSET:g}L{outline}L0 {HEIGHT - INSET:g}z" class="bars"/>'
-
-
-def _caps(lanes: Sequence[Item], lane: float, axis: Axis) -> str:
-    caps = [item.claim.cap for item in lanes]
-    starts = [n for n, cap in enumerate(caps) if n == 0 or cap != caps[n - 1]]
-    ends = [*starts[1:], len(caps)]
-    return "".join(
-        f"M{axis.place(caps[start]):.1f} {INSET + lane * start:.1f}v{lane * (end - start):.2f}"
-        for start, end in zip(starts, ends, strict=True)
-        if caps[start] > 0
-    )
-
-
-def _marks(outcome: Outcome, places: Sequence[tuple[float, float]]) -> str:
-    """A dot where it agrees, a cross where it disagrees, an open square where it is inconclusive."""
-    distinct = dict.fromkeys((f"{x:.1f}", f"{y:.1f}") for x, y in places)
-    if not distinct:
-        return ""
-    shape = {Outcome.AGREES: "h0", Outcome.DISAGREES: "m-3-3l6 6m0-6l-6 6"}.get(outcome, "m-2.5-2.5h5v5h-5z")
-    path = "".join(f"M{x} {y}{shape}" for x, y in distinct)
-    return f'<path d="{path}" class="mark {OUTCOMES[outcome].css}-mark"/>'

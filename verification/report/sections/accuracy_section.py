@@ -121,8 +121,7 @@ def _overview(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str], 
             ]
             rows.append(row(case_cell(result, f"#{anchors[result]}-comparisons"), *cells))
     return Table(
-        f"Error of {source_label(source)} against the exact reference, then the uncertainty it states for "
-        "the same point. Marked where the estimate is below the error (▼) or below half of it (▼▼).",
+        stated("overview_errors", method=source_label(source)),
         ["case", *(QUANTITIES[name].symbol if name in QUANTITIES else name for name in columns)],
         rows,
         css="overview",

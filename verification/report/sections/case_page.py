@@ -16,6 +16,7 @@ from verification.report.figures.line_panels import case_figures
 from verification.report.figures.problem_sketch import sketch
 from verification.report.figures.verdict_strips import case_strips, items_of, ordered
 from verification.report.report_material import ReportMaterial
+from verification.report.report_words import stated
 from verification.report.sections import invariants_section, published_section
 from verification.report.tables.case_lookup import contact_radius, divisor, layers, scale, slug
 from verification.report.tables.case_tables import (
@@ -99,18 +100,15 @@ def rerun_command(name: str, command: str) -> str:
 
 def summary(result: CaseResult) -> str:
     """The outcome of a case in one or two sentences."""
-    bad = sum(verdict.outcome is not Outcome.AGREES for _, verdict in result.verdicts)
-    broken = sum(one.outcome is not Outcome.AGREES for one in result.invariants)
-    total, count = len(result.verdicts), len(result.invariants)
-    text = f"{bad} of {total} comparisons do not agree" if bad else f"All {total} comparisons agree"
-    if broken:
-        text += f", {broken} of {count} invariants do not hold"
-    elif count:
-        text += f", all {count} invariants hold"
-    gaps = [v.difference for _, v in result.verdicts if v.difference is not None]
-    if gaps:
-        text += f"; the largest difference is {scientific(max(gaps))}"
-    return f"{text}." if total else "No comparison was possible."
+    verdicts, gaps = [v for _, v in result.verdicts], [v.difference for _, v in result.verdicts]
+    return stated(
+        "summary",
+        bad=sum(one.outcome is not Outcome.AGREES for one in verdicts),
+        total=len(verdicts),
+        broken=sum(one.outcome is not Outcome.AGREES for one in result.invariants),
+        count=len(result.invariants),
+        gap=scientific(max((gap for gap in gaps if gap is not None), default=None)),
+    )
 
 
 def data(material: ReportMaterial) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from verification.evidence.code_record import shared_functions
 from verification.evidence.first_notice import by_place, score
 from verification.judging.verdict import Claim, Outcome, Verdict
 from verification.page.number_text import plain, scientific
-from verification.page.source_labels import OUTCOMES, OutcomeStyle, source_label, symbol_of
+from verification.page.source_labels import OUTCOMES, source_label, symbol_of
 from verification.problem.line_profile import EDGE_LINE
 from verification.problem.quantity import QUANTITIES, SCALARS, SLOPES
 from verification.regression.baseline_change import State, baseline_message
@@ -52,11 +52,21 @@ class Worth:
 
 def contents(material: ReportMaterial) -> dict[str, Any]:
     """Content of the template of the first page."""
+    outcomes = Counter(verdict.outcome for result in material.results for _, verdict in result.verdicts)
     return {
-        "asked": _asked(material),
-        "headline": _headline(material),
+        "contacts": material.contacts,
+        "sources": material.published,
+        "results": material.results,
+        "bad": sum(result.outcome is not Outcome.AGREES for result in material.results),
+        "agreeing": outcomes[Outcome.AGREES],
+        "total": outcomes.total(),
         "largest": _largest(material),
-        "tallies": _tallies(material),
+        # the agreeing ones first
+        "tallies": [
+            (OUTCOMES[one], outcomes[one])
+            for one in reversed(OUTCOMES)
+            if outcomes[one] or one is Outcome.AGREES
+        ],
         "alarms": _alarms(material),
         "answered": _answered(material),
         "agreements": agreements(material),
@@ -66,7 +76,8 @@ def contents(material: ReportMaterial) -> dict[str, Any]:
         "worth": worth(material),
         "model": model_costs(material),
         "left_out": left_out(material.results),
-        "unverified": _unverified(material),
+        "most_coatings": max([MOST_COATINGS, *(len(layers(one.problem)) - 1 for one in material.contacts)]),
+        "validated": material.evidence.validation is not None,
         "shaped": any(result.problem.get("indenter") for result in material.contacts),
     }
 
@@ -78,31 +89,6 @@ def _answered(material: ReportMaterial) -> list[tuple[str, str]]:
     for name in sorted(found, key=lambda name: (list(SOURCES).index(name) if name in SOURCES else 99, name)):
         texts.setdefault("closed" if name in CLOSED else name, []).append(source_label(name))
     return [(key, ", ".join(labels)) for key, labels in texts.items()]
-
-
-def _headline(material: ReportMaterial) -> str:
-    results = material.results
-    if not results:
-        return "No case was run."
-    total = sum(len(result.verdicts) for result in results)
-    agreeing = sum(v.outcome is Outcome.AGREES for result in results for _, v in result.verdicts)
-    bad = sum(result.outcome is not Outcome.AGREES for result in results)
-    cases = _counted(results, "case")
-    if not bad:
-        return f"All {total} comparisons of {cases} agree within their numerical uncertainty"
-    return f"{bad} of {cases} do not agree: {total - agreeing} of {total} comparisons"
-
-
-def _asked(material: ReportMaterial) -> str:
-    """The contacts and sources compared, in one sentence."""
-    contacts, published = material.contacts, material.published
-    texts = [f"{_counted(contacts, 'contact')} with a coated solid"] if contacts else []
-    texts += [_counted(published, "published source")] if published else []
-    return f"{' and '.join(texts)}, solved by independent methods." if texts else ""
-
-
-def _counted(results: Sequence[CaseResult], noun: str) -> str:
-    return f"{len(results)} {noun}{'' if len(results) == 1 else 's'}"
 
 
 def _largest(material: ReportMaterial) -> list[str]:
@@ -210,12 +196,6 @@ def _badness(result: CaseResult) -> tuple[int, float]:
     return OUTCOMES[result.outcome].rank, -largest
 
 
-def _tallies(material: ReportMaterial) -> list[tuple[OutcomeStyle, int]]:
-    """How many comparisons have each verdict, the agreeing ones first."""
-    counted = Counter(verdict.outcome for result in material.results for _, verdict in result.verdicts)
-    return [(OUTCOMES[o], counted[o]) for o in reversed(OUTCOMES) if counted[o] or o is Outcome.AGREES]
-
-
 def repeated(material: ReportMaterial) -> set[tuple[str, int]]:
     """The comparisons (case, number) that repeat those of another case: friction leaves the contact as it is.
 
@@ -302,26 +282,6 @@ def model_costs(material: ReportMaterial) -> list[Worth]:
             cost, result = max(found, key=lambda one: one[0].size)
             rows.append(Worth(title, cost.words, f"#{material.anchors[result]}", None, result.title))
     return rows
-
-
-def _unverified(material: ReportMaterial) -> list[str]:
-    """Problems that no comparison of the run reaches, a line each."""
-    most = max((len(layers(result.problem)) - 1 for result in material.contacts), default=0)
-    texts = [
-        f"More than {max(most, MOST_COATINGS)} coatings, and what lies outside the ranges of the problems "
-        "solved.",
-        "Residual stress, temperature, graded coatings, strengths and critical loads: coatcheck solve and "
-        "study add them to the stresses, without a second method.",
-        "Ellipses on films that are thin beside their short half axis: the elements are so uncertain there "
-        "that much is inconclusive (manual, Uncertainty and verdict).",
-        "Stress, friction and shape of the contact in an experiment."
-        if material.evidence.validation
-        else "Any experiment.",
-    ]
-    share, count = left_out(material.results)
-    if count:
-        texts.append(f"Points within {share:.0f} % of the contact edge, in {count} comparisons.")
-    return texts
 
 
 def worth(material: ReportMaterial) -> list[Worth]:

@@ -54,9 +54,14 @@ def section(results: Sequence[CaseResult], anchors: Mapping[CaseResult, str]) ->
         )
     held = sum(one.outcome is Outcome.AGREES for _, one in found)
     tightest = max((one for _, one in found), key=lambda one: one.share or 0.0)
-    text = (
-        f"{held} of {len(found)} invariants hold over {len(results)} cases. The closest to its bound is "
-        f"{tightest.name} of {source_label(tightest.source)}, at {_percent(tightest.share)} of it."
+    text = stated(
+        "all_invariants",
+        held=held,
+        total=len(found),
+        cases=len(results),
+        tightest=tightest.name,
+        source=source_label(tightest.source),
+        share=_percent(tightest.share),
     )
     heads = ["invariant", *["hold", "residual", "share"] * len(sources)]
     groups = [("", 1), *((source_label(source), 3) for source in sources)]

@@ -7,7 +7,7 @@ from verification.credibility.refinement_studies import QUANTITIES, Refinement
 from verification.judging.invariants import Invariant
 from verification.judging.outcome import Outcome
 from verification.page.number_text import seconds
-from verification.page.page_parts import Cell, Gallery, Part, Section, Table, number, row, table_of
+from verification.page.page_parts import Cell, Gallery, Part, Section, Table, number, row
 from verification.page.plots import DASHES, DOTS, MIXED, UNKNOWN, Plot, Trail, panels
 from verification.page.source_labels import OUTCOMES, row_css
 from verification.report.figures.line_panels import swatch
@@ -62,23 +62,14 @@ def finite_element_section(study: AccuracyStudy | None) -> Section | None:
 def _judged(found: Sequence[Invariant]) -> Part:
     """Each part of the method beside its limit, which counts for the exit code of the run."""
     held = sum(one.outcome is Outcome.AGREES for one in found)
-    table = table_of(
-        "The parts of the method beside their limits.",
-        sorted(found, key=lambda one: OUTCOMES[one.outcome].rank),
-        [
-            ("part", lambda one: one.name),
-            ("error", lambda one: Cell(one.message, css="reason")),
-            (
-                "verdict",
-                lambda one: Cell(
-                    OUTCOMES[one.outcome].mark, one.share, f"verdict {OUTCOMES[one.outcome].css}"
-                ),
-            ),
-        ],
-        css="verdicts",
-        row_css=lambda one: row_css(one.outcome),
-    )
-    return Part(stated("judged_studies", held=held, total=len(found)), [table])
+    rows = []
+    for one in sorted(found, key=lambda one: OUTCOMES[one.outcome].rank):
+        style = OUTCOMES[one.outcome]
+        mark = Cell(style.mark, one.share, f"verdict {style.css}")
+        rows.append(row(one.name, Cell(one.message, css="reason"), mark, css=row_css(one.outcome)))
+    heads, caption = ["part", "error", "verdict"], "The parts of the method beside their limits."
+    text = stated("judged_studies", held=held, total=len(found))
+    return Part(text, [Table(caption, heads, rows, css="verdicts")])
 
 
 def _gallery(studies: Sequence[Refinement], coordinate: str, ticks: Sequence[float], caption: str) -> Gallery:

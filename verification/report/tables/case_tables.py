@@ -1,7 +1,7 @@
 """The tables of one case: contact, verdicts, uncertainty budget, run times."""
 
 import textwrap
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from math import isfinite, isinf
 from typing import Any
@@ -67,49 +67,44 @@ def layer_table(result: CaseResult, body: str = FLAT) -> Table:
     problem = result.problem
     length = "a" if "load_radius" in problem else "a_h"
     a_h = scale(problem, "load_radius" if length == "a" else "a_h")
-    found = layers(problem, body)
+    found, stated_of = layers(problem, body), _stated(result, body)
+    rows = []
+    for n, (E, nu, h) in enumerate(found):
+        over = plain(h / a_h, 3) if a_h > 0 else "–"
+        rows.append(
+            row(
+                "substrate" if n == len(found) - 1 else f"coating {n + 1}",
+                Cell(engineering(E, "Pa"), E),
+                Cell(plain(E / found[-1][0], 3), E),
+                number(nu, plain),
+                *(Cell("∞" if isinf(h) else text, h) for text in (engineering(h, "m"), over)),
+                *(_stated_cell(values[n]) for values in stated_of.values()),
+            )
+        )
+    caption = "Layers from the surface down."
+    if body == BALL:
+        caption = "Layers of the ball, from its surface inwards."
+    return Table(caption, ["layer", "E", "E / E_s", "nu", "h", f"h / {length}", *stated_of], rows)
 
-    def thickness(h: float, shown: str) -> Cell:
-        return Cell("∞" if isinf(h) else shown, h)
 
-    return table_of(
-        "Layers from the surface down." if body == FLAT else "Layers of the ball, from its surface inwards.",
-        enumerate(found, start=1),
-        [
-            ("layer", lambda at: "substrate" if at[0] == len(found) else f"coating {at[0]}"),
-            ("E", lambda at: Cell(engineering(at[1][0], "Pa"), at[1][0])),
-            ("E / E_s", lambda at: Cell(plain(at[1][0] / found[-1][0], 3), at[1][0])),
-            ("nu", lambda at: number(at[1][1], plain)),
-            ("h", lambda at: thickness(at[1][2], engineering(at[1][2], "m"))),
-            (f"h / {length}", lambda at: thickness(at[1][2], plain(at[1][2] / a_h, 3) if a_h > 0 else "–")),
-            *_stated_columns(result, body, len(found)),
-        ],
-    )
-
-
-def _stated_columns(result: CaseResult, body: str, count: int) -> list[tuple[str, Callable[[Any], Value]]]:
-    """Columns of what a case states of the ``count`` layers of a body beside its problem, none without."""
-    stated = result.stated
-    sublayers = [*(stated.get("layers", {}).get(body) or [1] * (count - 1)), 1]
+def _stated(result: CaseResult, body: str) -> dict[str, list[Any]]:
+    """Statements of a case on each layer of a body beside its problem, by heads of columns."""
+    known, count = result.stated, len(layers(result.problem, body))
+    sublayers = [*(known.get("layers", {}).get(body) or [1] * (count - 1)), 1]
     coating = [i for i, n in enumerate(sublayers) for _ in range(n)]  # that each layer belongs to
     before, base = (f"{BALL}.", BALL) if body == BALL else ("", "substrate")
     places = [f"{before}coatings.{i}" for i in coating[: count - 1]] + [base]
-    limits = stated.get("limits", {})
-    names = stated.get("names", {}).get(body, ())
+    names, limits = known.get("names", {}).get(body, ()), known.get("limits", {})
     found: dict[str, list[Any]] = {
         "name": [names[i] or "" for i in coating] if any(names) else [],
-        "residual stress": [*stated.get("residual", {}).get(body, ()), 0.0],
+        "residual stress": [*known.get("residual", {}).get(body, ()), 0.0],
     }
-    for name in LIMITS:
-        found[name.replace("_", " ")] = [limits.get(f"{place}.{name}") for place in places]
+    found |= {name.replace("_", " "): [limits.get(f"{at}.{name}") for at in places] for name in LIMITS}
+    return {head: values for head, values in found.items() if any(values)}
 
-    def shown(values: list[Any], at: Any) -> Value:
-        value = values[at[0] - 1]
-        if value is None or isinstance(value, str):
-            return value or ""
-        return Cell(engineering(value, "Pa"), value)
 
-    return [(head, partial(shown, values)) for head, values in found.items() if any(values)]
+def _stated_cell(value: Any) -> Value:
+    return value or "" if value is None or isinstance(value, str) else Cell(engineering(value, "Pa"), value)
 
 
 def stress_table(result: CaseResult, found: Designed) -> Table:
@@ -138,11 +133,7 @@ def stress_table(result: CaseResult, found: Designed) -> Table:
 
 def contact_tables(result: CaseResult) -> list[Table]:
     """The numbers of the contact, then of an elastic ball those of its own surface."""
-    text = (
-        "In parentheses the uncertainty of the last digits. Below, |A − B| of each pair of sources, its U, "
-        "over the value; of the largest tension over the smaller of p_h and p0, of its place over a."
-    )
-    tables = [_contact_table(result, SCALARS + SLOPES + PEAKS, text)]
+    tables = [_contact_table(result, SCALARS + SLOPES + PEAKS, stated("contact_numbers"))]
     if layers(result.problem, BALL):
         tables.append(_contact_table(result, BALL_PEAKS, "The surface of the ball."))
     return [table for table in tables if table]

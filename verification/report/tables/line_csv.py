@@ -17,17 +17,12 @@ def line_csv(profiles: Iterable[Profile], line: str) -> str:
 
     Sources at the same positions share one position column; another one follows where they differ.
     """
-    groups: list[list[Profile]] = []
+    groups: dict[bytes, list[Profile]] = {}
     for profile in profiles:
-        if profile.line != line:
-            continue
-        same = [g for g in groups if g[0].position.tobytes() == profile.position.tobytes()]
-        if same:
-            same[0].append(profile)
-        else:
-            groups.append([profile])
+        if profile.line == line:
+            groups.setdefault(profile.position.tobytes(), []).append(profile)
     columns: list[list[str]] = []
-    for group in groups:
+    for group in groups.values():
         if line != "contact":
             columns.append([f"{coordinate_of(line)} [m]", *(f"{x:.9g}" for x in group[0].position.tolist())])
         for profile in group:

@@ -27,19 +27,14 @@ from verification.cases.toml_file import Strict
 from verification.cases.unit_numbers import InSI, Pascals
 from verification.problem.array_types import Array
 from verification.study.largest_stresses import Stress
+from verification.study.sweep_values import Between
 
 
-class Uniform(Strict):
+class Uniform(Between):
     """Any strength [Pa] between two, equally likely."""
 
     start: Annotated[Pascals, Field(alias="from")]
     to: Pascals
-
-    @model_validator(mode="after")
-    def _upwards(self) -> "Uniform":
-        if not self.start < self.to:
-            raise ValueError(f"runs from {self.start:g} to {self.to:g} Pa; give from < to")
-        return self
 
 
 class LogNormal(Strict):

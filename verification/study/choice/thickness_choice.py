@@ -6,7 +6,7 @@ sampled, and in each sample the mode with the largest utilisation governs.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -56,9 +56,8 @@ class Choice:
     """Recommendation by the curves of one modulus, one for each friction; thicknesses over a_h.
 
     modes : of the criterion.   h, use : dense samples, (frictions, modes, samples) of utilisations.
-    error : of a utilisation, by interpolation.   tolerance : above the smallest one, ``least``, over it,
-    within which thicknesses are equally good.
-    even : the range of these.   ranges : admissible ones, none without strengths.
+    bound : the largest utilisation at each of h by stresses that include their uncertainty.
+    error : of a utilisation, by interpolation.
     """
 
     curves: tuple[ThicknessCurve, ...]
@@ -66,10 +65,8 @@ class Choice:
     modes: tuple[str, ...]
     h: Array
     use: Array
+    bound: Array
     error: float
-    tolerance: float = 0.0
-    even: Range = (None, None)
-    ranges: tuple[Range, ...] = ()
 
     @cached_property
     def largest(self) -> Array:
@@ -85,6 +82,47 @@ class Choice:
     def best(self) -> float:
         """Thickness of ``least``."""
         return float(self.h[self.largest.argmin()])
+
+    @property
+    def tolerance(self) -> float:
+        """The excess over the smallest utilisation, over it, within which thicknesses are equally good."""
+        return max(EVEN, self.error / (self.least or 1.0))
+
+    @cached_property
+    def even(self) -> Range:
+        """The range of equally good thicknesses."""
+        best, limit = int(self.largest.argmin()), (self.least or 1.0) * (1 + self.tolerance)
+        beyond = np.flatnonzero(self.largest > limit).tolist()
+        below, above = [k for k in beyond if k < best], [k for k in beyond if k > best]
+        return self._end(below[-1]) if below else None, self._end(above[0]) if above else None
+
+    @cached_property
+    def ranges(self) -> tuple[Range, ...]:
+        """Ranges where ``bound`` is at most 1, their ends by linear interpolation; none without strengths."""
+        if not self.criteria.limited:
+            return ()
+        inside, h = self.bound <= 1, self.h
+        starts = np.flatnonzero(inside & ~np.append(False, inside[:-1]))
+        ends = np.flatnonzero(inside & ~np.append(inside[1:], False))
+        return tuple(
+            (self._crossing(i - 1) if i else None, self._crossing(j) if j < h.size - 1 else None)
+            for i, j in zip(starts.tolist(), ends.tolist(), strict=True)
+        )
+
+    def _crossing(self, k: int) -> End:
+        """The end between samples k and k + 1, where the utilisation is 1."""
+        (low, high), (before, after) = self.h[k : k + 2], self.bound[k : k + 2]
+        at = float(low + (high - low) * (1 - before) / (after - before))
+        return self._end(int(np.abs(self.h - at).argmin()), at)
+
+    def _end(self, k: int, h: float | None = None) -> End:
+        """The end at sample ``k``, or at ``h`` beside it; uncertain by the error over its slope."""
+        near = slice(max(k - 1, 0), k + 2)
+        slope = abs(np.gradient(self.largest[near], self.h[near]))[-2:].max()
+        step = float(np.diff(self.h[max(k - 1, 0) : k + 1]).max(initial=0.0))
+        at = float(self.h[k]) if h is None else h
+        U = min(max(self.error / slope if slope else at, step), at)
+        return End(at, U, *self.governing(float(self.h[k])))
 
     def governing(self, h: float) -> tuple[str, float]:
         """The mode with the largest utilisation at ``h``, and the friction at which it is."""
@@ -134,23 +172,13 @@ def choice(curves: Sequence[ThicknessCurve], criteria: Criteria) -> Choice:
     h = np.geomspace(max(one.h[0] for one in members), min(one.h[-1] for one in members), SAMPLES)
     use, bound, errors = [], [], [0.0]
     for one in members:
-        s, stress = np.log(one.h), np.array([one.stress[mode] for mode in strengths])
+        s, stress = np.log(one.h), np.array([one.value[mode] for mode in strengths])
         U = np.nan_to_num([one.uncertainty[mode] for mode in strengths])
         use.append(PchipInterpolator(s, scale * stress, axis=1)(np.log(h)))
         bound.append(PchipInterpolator(s, scale * (stress + U), axis=1)(np.log(h)))
         errors.append(interpolation_error(s, scale * stress) / HALVED)
-    found = Choice(members, criteria, tuple(strengths), h, np.stack(use), float(np.nanmax(errors)))
-    largest, least = found.largest, found.least or 1.0
-    found = replace(found, tolerance=max(EVEN, found.error / least))
-    best = int(largest.argmin())
-    beyond = largest > least * (1 + found.tolerance)
-    below, above = np.flatnonzero(beyond[:best]), best + np.flatnonzero(beyond[best:])
-    even = (
-        _end(found, int(below[-1])) if below.size else None,
-        _end(found, int(above[0])) if above.size else None,
-    )
-    admissible = _admissible(found, np.stack(bound).max(axis=(0, 1))) if criteria.limited else ()
-    return replace(found, even=even, ranges=admissible)
+    largest = np.stack(bound).max(axis=(0, 1))
+    return Choice(members, criteria, tuple(strengths), h, np.stack(use), largest, float(np.nanmax(errors)))
 
 
 def interpolation_error(s: Array, values: Array) -> float:
@@ -164,30 +192,3 @@ def interpolation_error(s: Array, values: Array) -> float:
         interpolated = PchipInterpolator(s[others], values[..., others], axis=-1)(s[i])
         worst = max(worst, float(np.abs(interpolated - values[..., i]).max())) if worst == worst else worst
     return worst
-
-
-def _admissible(found: Choice, largest: Array) -> tuple[Range, ...]:
-    """Ranges where ``largest`` is at most 1, their ends by linear interpolation between samples."""
-    inside, h = largest <= 1, found.h
-    starts = np.flatnonzero(inside & ~np.append(False, inside[:-1]))
-    ends = np.flatnonzero(inside & ~np.append(inside[1:], False))
-
-    def crossing(k: int) -> End:
-        """The end between samples k and k + 1, where the utilisation is 1."""
-        at = float(h[k] + (h[k + 1] - h[k]) * (1 - largest[k]) / (largest[k + 1] - largest[k]))
-        return _end(found, int(np.abs(h - at).argmin()), at)
-
-    return tuple(
-        (crossing(i - 1) if i else None, crossing(j) if j < h.size - 1 else None)
-        for i, j in zip(starts.tolist(), ends.tolist(), strict=True)
-    )
-
-
-def _end(found: Choice, k: int, h: float | None = None) -> End:
-    """The end at sample ``k``, or at ``h`` beside it; uncertain by the error over its slope."""
-    near = slice(max(k - 1, 0), k + 2)
-    slope = abs(np.gradient(found.largest[near], found.h[near]))[-2:].max()
-    step = float(np.diff(found.h[max(k - 1, 0) : k + 1]).max(initial=0.0))
-    at = float(found.h[k]) if h is None else h
-    U = min(max(found.error / slope if slope else at, step), at)
-    return End(at, U, *found.governing(float(found.h[k])))

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
-from verification.page.page_parts import Cell, Part, Section, number, table_of
+from verification.page.page_parts import Cell, Part, Section, Table, number, row
 from verification.problem.array_types import Array
 from verification.study.choice.critical_load import BAND, Critical, critical, ramps
 from verification.study.choice.failure_criteria import MODES
@@ -107,45 +107,32 @@ def _newtons(value: float, uncertainty: float, one: Critical) -> str:
 
 
 def _table(study: Study, found: Sequence[Critical]) -> Part:
-    units = study.units
-
-    def load(quantile: int) -> Callable[[tuple[Critical, str]], Cell]:
-        def cell(item: tuple[Critical, str]) -> Cell:
-            one, mode = item
-            value = one.of[mode][quantile]
-            return Cell(_newtons(value, one.uncertainty[mode], one)[: -len(" N")], value)
-
-        return cell
-
-    def reached(item: tuple[Critical, str]) -> float | None:
-        """The median critical load of an item; None where it is not reached within the ramp."""
-        middle = item[0].of[item[1]][1]
-        return middle if 0 < middle < np.inf else None
-
-    def p0(item: tuple[Critical, str]) -> float | None:
-        middle, ramp = reached(item), item[0].ramp
-        return middle and float(np.interp(np.log(middle), np.log(ramp.load), ramp.p0)) / units.pascal
-
-    table = table_of(
+    units, rows = study.units, []
+    reached = [(each, mode) for each in found for mode in each.of if np.isfinite(each.of[mode][0])]
+    for one, mode in reached:
+        ramp, U, quantiles = one.ramp, one.uncertainty[mode], one.of[mode]
+        # the median, where it is reached within the ramp, and the peak pressure there
+        middle = quantiles[1] if 0 < quantiles[1] < np.inf else None
+        p0 = middle and float(np.interp(np.log(middle), np.log(ramp.load), ramp.p0)) / units.pascal
+        rows.append(
+            row(
+                number(ramp.ratio, "{:.4g}".format),
+                number(ramp.thickness / units.metre, "{:.4g}".format),
+                number(ramp.friction, "{:g}".format),
+                Cell(mode, note=MODES[mode]),
+                *(Cell(_newtons(load, U, one).removesuffix(" N"), load) for load in quantiles),
+                middle and U,
+                number(p0, "{:.3g}".format),
+                number(one.share[mode], "{:.0%}".format),
+            )
+        )
+    heads = ["E1/E2", f"h [{units.length}]", "f", "mode", *(f"{100 * share:g} %" for share in BAND)]
+    table = Table(
         "Critical load [N] of each failure mode whose strength some sample reaches within the ramp: its 5 %, "
         "50 %, 95 % quantiles, the numerical uncertainty of the median, the peak pressure there; last the "
         "probability that this mode is the first, none where several are reached below the ramp.",
-        [(one, mode) for one in found for mode in one.of if np.isfinite(one.of[mode][0])],
-        [
-            ("E1/E2", lambda item: number(item[0].ramp.ratio, "{:.4g}".format)),
-            (
-                f"h [{units.length}]",
-                lambda item: number(item[0].ramp.thickness / units.metre, "{:.4g}".format),
-            ),
-            ("f", lambda item: number(item[0].ramp.friction, "{:g}".format)),
-            ("mode", lambda item: Cell(item[1], note=MODES[item[1]])),
-            ("5 %", load(0)),
-            ("50 %", load(1)),
-            ("95 %", load(2)),
-            ("±", lambda item: reached(item) and item[0].uncertainty[item[1]]),
-            (f"p0 [{units.stress}]", lambda item: number(p0(item), "{:.3g}".format)),
-            ("first", lambda item: number(item[0].share[item[1]], "{:.0%}".format)),
-        ],
+        [*heads, "±", f"p0 [{units.stress}]", "first"],
+        rows,
     )
     return Part("", [table])
 
@@ -161,10 +148,7 @@ def _groups(found: Sequence[Critical]) -> dict[tuple[float, float], list[Critica
 def _maps(study: Study, found: Sequence[Critical]) -> list[Drawn]:
     """Critical load of each mode over the thickness, with the band of 90 % of the strengths."""
     drawings, units = [], study.units
-    groups: dict[tuple[float, float], list[Critical]] = {}
-    for one in sorted(found, key=lambda one: one.ramp.thickness):
-        groups.setdefault((one.ramp.ratio, one.ramp.friction), []).append(one)
-    for (ratio, friction), members in groups.items():
+    for (ratio, friction), members in _groups(found).items():
         if len(members) < 2:
             continue
         modes = [mode for mode in members[0].of if any(np.isfinite(one.of[mode][0]) for one in members)]

@@ -5,24 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from markupsafe import Markup
 from numpy.typing import NDArray
 
 from verification.page.figures import inline
 from verification.page.html_page import render_sections
-from verification.page.page_parts import (
-    Cell,
-    Gallery,
-    Panel,
-    Part,
-    Row,
-    Section,
-    Table,
-    embedded,
-    number,
-    row,
-    table_of,
-)
+from verification.page.page_parts import Gallery, Panel, Part, Section, number, table_of, words
 from verification.page.source_labels import source_label
 from verification.problem.array_types import Coatings
 from verification.problem.display_units import radii_text
@@ -33,6 +20,10 @@ from verification.study.pages.study_figures import Drawn, write_drawn
 from verification.study.study_plan import Study
 from verification.study.thickness_curves import CrossCheck, cross_checks
 
+ASSUMED = (
+    "parabolic ball, small strains, linear elasticity, perfect bond, friction that leaves the pressure "
+    "unchanged; strengths are independent of each other"
+)
 Draw = tuple[str, str, Callable[[], list[Drawn]]]  # anchor, title, function that draws the figures
 
 
@@ -110,38 +101,30 @@ def _inputs_section(study: Study) -> Section:
         f"{min(h) / bare.a_h:.3g} to {max(h) / bare.a_h:.3g} a_h"
     )
     strengths = study.criteria.given(units.shown_stress)
+    stresses = ", ".join(map(units.shown_stress, study.residual))
+    lengths = [units.shown_length(one) for one in (bare.a_h, bare.delta_h)]
+    scales = f"a_h = {lengths[0]}, p_h = {units.shown_stress(bare.p_h)}, delta_h = {lengths[1]}"
     rows = [
-        row("indenter" if study.indenter else "ball", called("ball", f"{radii_text(bare)}, {E_ball}")),
+        ("indenter" if study.indenter else "ball", called("ball", f"{radii_text(bare)}, {E_ball}")),
         *(
-            row(f"coating {i} on the ball", text)
+            (f"coating {i} on the ball", text)
             for i, text in enumerate(layers(study.ball[2] if study.ball else (), "ball.coatings"), start=1)
         ),
-        row("load", _load(study)),
-        row("substrate", called("substrate", _solid(*study.substrate))),
-        row("coating", f"{own} (E1/E2 = {ratios}), nu = {study.coating_nu:g}"),
-        *(row(f"{side} it", "; ".join(held)) for side, held in fixed.items() if held),
-        row("thickness", swept),
-        row("friction", ", ".join(f"{f:g}" for f in study.frictions)),
-        row(
-            "residual stress of the coating",
-            ", ".join(units.shown_stress(one) for one in study.residual).replace("-", "−") or "none",
-        ),
-        row(
-            "uncoated",
-            f"a_h = {units.shown_length(bare.a_h)}, p_h = {units.shown_stress(bare.p_h)}, "
-            f"delta_h = {units.shown_length(bare.delta_h)}",
-        ),
-        *(row(f"strength, {mode}", f"{one.text} ({MODES[mode]})") for mode, one in strengths.items()),
-        *(row(key, units.shown_stress(value)) for key, value in study.hardness.items()),
-        row("safety factor on every stress", f"{study.criteria.safety:g}"),
-        row(
-            "assumed",
-            "parabolic ball, small strains, linear elasticity, perfect bond, friction that leaves the "
-            "pressure unchanged; strengths are independent of each other",
-        ),
+        ("load", _load(study)),
+        ("substrate", called("substrate", _solid(*study.substrate))),
+        ("coating", f"{own} (E1/E2 = {ratios}), nu = {study.coating_nu:g}"),
+        *((f"{side} it", "; ".join(held)) for side, held in fixed.items() if held),
+        ("thickness", swept),
+        ("friction", ", ".join(f"{f:g}" for f in study.frictions)),
+        ("residual stress of the coating", stresses.replace("-", "−") or "none"),
+        ("uncoated", scales),
+        *((f"strength, {mode}", f"{one.text} ({MODES[mode]})") for mode, one in strengths.items()),
+        *((key, units.shown_stress(value)) for key, value in study.hardness.items()),
+        ("safety factor on every stress", f"{study.criteria.safety:g}"),
+        ("assumed", ASSUMED),
     ]
-    rows = [Row(one.head, [Cell(cell.text, css="words") for cell in one.cells]) for one in rows]
-    return Section("inputs", "Inputs and assumptions", [Part("", [Table("", ["input", "value"], rows)])])
+    table = table_of("", rows, [("input", lambda one: one[0]), ("value", lambda one: words(one[1]))])
+    return Section("inputs", "Inputs and assumptions", [Part("", [table])])
 
 
 def _load(study: Study) -> str:
@@ -185,16 +168,10 @@ def _drawn_section(anchor: str, title: str, drawings: Sequence[Drawn]) -> Sectio
     panels = [
         Panel(
             d.title,
-            Markup(
-                '{}<a class="csv" href="{}" download="{}.csv.gz" data-csv="{}.csv">Numbers as CSV</a>'
-            ).format(
-                inline(d.svg.decode(), f"{d.name}: {d.title}. {d.caption}", css="print"),
-                embedded(d.csv),
-                d.name,
-                d.name,
-            ),
+            inline(d.svg.decode(), f"{d.name}: {d.title}. {d.caption}", css="print"),
             d.caption,
-            "",
+            csv=d.csv,
+            file=f"{d.name}.csv",
         )
         for d in drawings
     ]

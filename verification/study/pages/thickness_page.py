@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from verification.cases.unit_numbers import Units
-from verification.page.page_parts import Cell, Part, Section, Table, Value, number, row, table_of, words
+from verification.page.page_parts import Cell, Part, Section, Table, Value, number, row, words
 from verification.study.choice.failure_criteria import MODES
 from verification.study.choice.thickness_choice import DRAWN, Choice, End, Range, choice
 from verification.study.pages.contour_maps import contour_figures, nearest
@@ -167,56 +167,42 @@ def write_study_report(
 
 
 def _preference(study: Study, choices: Sequence[Choice], said: Sequence[str]) -> Section:
-    units = study.units
-    # Each choice of the answer, then that of each friction alone.
-    rows = [
-        one
-        for every in choices
-        for one in (every, *(choice([one], study.criteria) for one in every.curves if len(every.curves) > 1))
-    ]
-    limited = study.criteria.limited
-
-    def lengths(text: str) -> str:
-        return text.replace(f" {units.length}", "")
-
-    def friction(one: Choice) -> Value:
-        f = [curve.friction for curve in one.curves]
-        return number(f[0], "{:g}".format) if len(f) == 1 else f"{f[0]:g} to {f[-1]:g}"
-
-    columns: list[tuple[str, Callable[[Choice], Value]]] = [
-        ("E1/E2", lambda one: number(one.curves[0].ratio, "{:.4g}".format)),
-        ("f", friction),
-        (f"best h [{units.length}]", lambda one: lengths(between(one, one.even, units))),
-        ("tolerance", lambda one: number(one.tolerance, "{:.1%}".format)),
-        (
-            "stress / strength" if limited else "stress / p_h",
-            lambda one: Cell(rounded(one.least, one.error), one.least),
-        ),
-        ("governing mode", lambda one: Cell(_mode(one), note=MODES[_mode(one)])),
-    ]
-    if limited:
-        columns.append(
-            (
-                f"admissible h [{units.length}]",
-                lambda one: words(
-                    lengths("; ".join(between(one, ends, units, safe=True) for ends in one.ranges)) or "none"
-                ),
+    units, limited, rows = study.units, study.criteria.limited, []
+    for every in choices:
+        # Each choice of the answer, then that of each friction alone.
+        for one in (every, *(choice([c], study.criteria) for c in every.curves if len(every.curves) > 1)):
+            frictions, (mode, _) = [curve.friction for curve in one.curves], one.governing(one.best)
+            ranges = [between(one, one.even, units)]
+            ranges += [between(one, ends, units, safe=True) for ends in one.ranges]
+            even, *admissible = (text.replace(f" {units.length}", "") for text in ranges)
+            rows.append(
+                row(
+                    number(one.curves[0].ratio, "{:.4g}".format),
+                    _ends(frictions),
+                    even,
+                    number(one.tolerance, "{:.1%}".format),
+                    Cell(rounded(one.least, one.error), one.least),
+                    Cell(mode, note=MODES[mode]),
+                    *([words("; ".join(admissible) or "none")] if limited else []),
+                    css="" if one.ranges or not limited else "disagrees",
+                )
             )
-        )
-    table = table_of(
+    heads = ["E1/E2", "f", f"best h [{units.length}]", "tolerance"]
+    heads += ["stress / strength" if limited else "stress / p_h", "governing mode"]
+    table = Table(
         "The thicknesses that are equally good, at all frictions together and at each alone: their largest "
         "stress exceeds the smallest by no more than the tolerance, 1 % or the error of interpolation.",
+        [*heads, *([f"admissible h [{units.length}]"] if limited else [])],
         rows,
-        columns,
-        row_css=lambda one: "" if one.ranges or not limited else "disagrees",
     )
     texts = [*(said if len(said) > 1 else []), study.criteria.description()]
     parts = [*(Part(text) for text in texts), Part("", [table])]
     return Section("preferable", "Which thickness", [*parts, *_chances(study, choices)])
 
 
-def _mode(one: Choice) -> str:
-    return one.governing(one.best)[0]
+def _ends(frictions: Sequence[float]) -> Value:
+    first, last = frictions[0], frictions[-1]
+    return number(first, "{:g}".format) if len(frictions) == 1 else f"{first:g} to {last:g}"
 
 
 def _chances(study: Study, choices: Sequence[Choice]) -> list[Part]:
