@@ -44,6 +44,10 @@ def main(how: str, path: str) -> None:
         write_checked(Path(path), {"said": str(os.getpid())})
     elif how == "threads":
         write_checked(Path(path), {"said": os.environ["OMP_NUM_THREADS"]})
+    elif how == "method":
+        import semianalytic
+
+        write_checked(Path(path), {"said": semianalytic.solve.__name__})
     elif how == "nothing":
         pass
     else:

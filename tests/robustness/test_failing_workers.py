@@ -77,6 +77,13 @@ def test_jobs_share_the_cores_each_has_one_at_least_and_no_more_than_stated(
     assert run_tasks([task("threads", tmp_path)], jobs=jobs, time_limit=300) == [threads]
 
 
+def test_a_folder_named_as_a_method_in_the_working_directory_hides_nothing(tmp_path, monkeypatch):
+    (tmp_path / "semianalytic").mkdir()
+    (tmp_path / "semianalytic" / "__init__.py").touch()
+    monkeypatch.chdir(tmp_path)
+    assert run_tasks([task("method", tmp_path)], jobs=1, time_limit=300) == ["solve"]
+
+
 def test_each_death_has_its_reason_and_the_others_finish(tmp_path):
     deaths = [how for how in REASONS if how != "hang"]
     tasks = [task(how, tmp_path) for how in (*deaths, "good")]

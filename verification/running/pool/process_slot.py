@@ -70,8 +70,10 @@ class Slot(Generic[T]):
         return self.task
 
     def _launch(self) -> subprocess.Popen[bytes]:
+        # Without the working directory, where a folder may have the name of a method, unless it is this one.
+        safe = [] if Path.cwd() == Path(__file__).resolve().parents[3] else ["-P"]
         self.process = subprocess.Popen(
-            [sys.executable, "-m", "verification.running.pool.fork_guard"],
+            [sys.executable, *safe, "-m", "verification.running.pool.fork_guard"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=self.errors,
