@@ -71,7 +71,7 @@ class Campaign:
 
     @property
     def judged(self) -> str:
-        """What ``source`` is the hash of, as ``source_hash`` names it."""
+        """Name, for ``source_hash``, of the code whose hash ``source`` is."""
         return "alarms" if self.kind == KINDS[-1] else "alarms of spheres"
 
     @property

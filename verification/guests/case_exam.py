@@ -30,7 +30,7 @@ from verification.problem.quantity import unit_of
 from verification.running.case_result import CaseResult, SourceResult
 from verification.running.checked_files import StoreError
 from verification.running.pool.pool_task import Task
-from verification.running.stored_run import read_result, result_of, write_result
+from verification.running.stored_run import read_stored, result_of, write_result
 
 ALONG_SURFACE = ("surface", "oblique surface")  # lines that cross the contact edge
 
@@ -56,7 +56,7 @@ def exam_task(case: Subject, folder: Path) -> Task[CaseResult]:
 def kept_exam(folder: Path, case: Subject) -> CaseResult | None:
     """The exact reference of an earlier run, where it is of the same case file and code."""
     try:
-        result = read_result(exam_path(folder, case), case)
+        result = read_stored(exam_path(folder, case), case)
     except StoreError:
         return None
     return result if result.profiles else None

@@ -24,7 +24,7 @@ from verification.running.stored_fields import (
     write_fields,
     write_plane,
 )
-from verification.running.stored_run import read_result, result_of, write_result
+from verification.running.stored_run import read_stored, result_of, write_result
 from verification.sampling.stress_plane import plane_invariants, sample_plane
 from verification.sources.method_sources import sharing_pressure
 from verification.sources.source_record import Solver
@@ -104,7 +104,7 @@ def kept_result(folder: Path, case: Case | PublishedCase, *, fields: bool = Fals
     path = result_path(folder, case)
     if not os.path.lexists(path):
         return None
-    result = read_result(path, case)
+    result = read_stored(path, case)
     if isinstance(case, Case):
         read_plane(plane_path(folder, case.name), case.text)
         if fields:

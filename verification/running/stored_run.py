@@ -26,7 +26,7 @@ def result_of(case: Any, data: dict[str, Any]) -> CaseResult:
     return result
 
 
-def read_result(path: Path, case: Any) -> CaseResult:
+def read_stored(path: Path, case: Any) -> CaseResult:
     """The result of ``case`` at ``path``, made by this code.
 
     Raises StoreError, naming the file, where there is none that can be used.

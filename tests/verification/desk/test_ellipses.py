@@ -115,7 +115,6 @@ def test_exchanging_the_axes_exchanges_the_stresses():
         (["--radii", "5 mm, 5 mm", "--against", "20 mm, -4 mm"], "along y"),
         (["--radii", "5 mm, 5 mm", "--ball", "10 mm, 210 GPa, 0.3"], "--ball with --radii"),
         (["--radii", "5 mm, 5 mm", "--ball-coating", "1 um, 200 GPa, 0.3"], "--ball"),
-        (["--ball", "5 mm", "--against", "5 mm, 5 mm"], "--radii"),
         (["--roller", "R = 5 mm"], '"R = 5 mm, crown 2 m"'),
         (["--roller", "R = 5,5 mm, crown 2 m"], "decimals with a point"),
         (["--roller", "R = 5 mm, crown flat"], "give a crown"),
