@@ -36,7 +36,7 @@ REASONS = {
 @pytest.fixture(autouse=True)
 def _planted(environment):
     places = [str(HERE), str(HERE.parent / "verification"), os.environ.get("PYTHONPATH", "")]
-    environment(PYTHONPATH=os.pathsep.join(places))
+    environment(PYTHONPATH=os.pathsep.join(filter(None, places)))  # an empty one is the working directory
 
 
 def task(how: str, folder: Path, number: int = 0) -> Task[str]:

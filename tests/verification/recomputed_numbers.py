@@ -115,7 +115,8 @@ def numbers(text):
     """Value of each number of a text in SI units, with half of its last digit."""
     for sign, digits, power, last, unit, prefix in NUMBER.findall(plain(text)):
         factor = 0.01 if unit == "%" else PREFIX.get(prefix, 1.0)
-        step = factor * 10.0 ** (int(power or 0) - len(digits.partition(".")[2]))
+        # a commit such as 4e40443 looks like a power, too
+        step = factor * 10.0 ** (min(int(power or 0), 300) - len(digits.partition(".")[2]))
         yield float(f"{sign}{digits}e{power or 0}") * factor, step / 2
         if last:
             yield int(last) * step, step / 2

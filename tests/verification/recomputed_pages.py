@@ -5,7 +5,7 @@ or anything that holds them.
 """
 
 import re
-from math import inf
+from math import comb, inf
 from statistics import median
 
 from recomputed_values import (
@@ -125,7 +125,17 @@ def alarms_of(campaigns):
     )
     wrong = {one.case for one in every if one.outcome != "INCONCLUSIVE"}
     vague = {one.case for one in every if one.outcome == "INCONCLUSIVE"}
-    return [[one.seed for one in campaigns], len(wrong), len(vague), total, 1 - 0.05 ** (1 / total)]
+    return [[one.seed for one in campaigns], len(wrong), len(vague), total, bound_at_95(len(wrong), total)]
+
+
+def bound_at_95(failed, total):
+    """The p at which no more than ``failed`` of ``total`` have a probability of 5 %, by halving."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        p = (low + high) / 2
+        as_few = sum(comb(total, k) * p**k * (1 - p) ** (total - k) for k in range(failed + 1))
+        low, high = (p, high) if as_few > 0.05 else (low, p)
+    return low
 
 
 def drawn_row(one):
@@ -248,7 +258,8 @@ def credibility(data, dates):
     bounds = [bound for one in e.enclosures.enclosures for bound in one.bounds]
     yield "credibility", [len(bounds), len(e.enclosures.enclosures), max(map(width, bounds))]
     yield "credibility", [e.enclosures.versions, e.self_tests]
-    yield "credibility", [alarms_of(of) for of in group(drawn, lambda one: one.kind).values()]
+    kinds = group(drawn, lambda one: one.kind).values()
+    yield "credibility", [[alarms_of(of) for of in kinds], sum(len(one.alarms) for one in drawn)]
     methods = group([one for of in drawn for one in of.ratios], lambda one: one.source).values()
     yield "credibility", [sum(one["values"] for one in of) for of in methods]
     yield "credibility", [agree(every), len(cases), max(shares(every))]

@@ -78,7 +78,11 @@ def _threads(jobs: int) -> int:
 
 @contextmanager
 def _interrupts() -> Iterator[list[int]]:
-    """Each Ctrl-C: Python drops the KeyboardInterrupt of one that falls into the clean-up of an import."""
+    """Each Ctrl-C, noted; the second is raised at once.
+
+    Raised while a module loads, it is dropped in the clean-up of the import, or Python ends by the signal and
+    not with the exit code, where a string is executed, as dataclasses do.
+    """
     seen: list[int] = []
     before = signal.getsignal(signal.SIGINT)
     if before is not signal.default_int_handler or threading.current_thread() is not threading.main_thread():
@@ -87,7 +91,8 @@ def _interrupts() -> Iterator[list[int]]:
 
     def noticed(number: int, frame: object) -> None:
         seen.append(number)
-        raise KeyboardInterrupt
+        if len(seen) > 1:
+            raise KeyboardInterrupt
 
     signal.signal(signal.SIGINT, noticed)
     try:
