@@ -169,7 +169,8 @@ def test_workers_of_a_killed_run_end_with_it(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-def test_ctrl_c_in_the_clean_up_of_an_import_stops_the_run_too(tmp_path):
+@pytest.mark.parametrize("waiting", [1, 0], ids=["a task waits", "every result is kept"])
+def test_ctrl_c_in_the_clean_up_of_an_import_stops_the_run_too(tmp_path, waiting):
     """Python drops an exception that a callback of a weak reference raises, as of the lock of an import."""
 
     class Lock:
@@ -188,7 +189,7 @@ def test_ctrl_c_in_the_clean_up_of_an_import_stops_the_run_too(tmp_path):
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored below nohup and the like
     try:
         with pytest.raises(KeyboardInterrupt):
-            run_tasks([task("hang", tmp_path)], jobs=1, time_limit=3, meanwhile=meanwhile)
+            run_tasks([task("hang", tmp_path)] * waiting, jobs=1, time_limit=3, meanwhile=meanwhile)
         assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     finally:
         signal.signal(signal.SIGINT, before)

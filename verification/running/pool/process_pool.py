@@ -78,7 +78,7 @@ def _threads(jobs: int) -> int:
 
 @contextmanager
 def _interrupts() -> Iterator[list[int]]:
-    """Each Ctrl-C, noted; the second is raised at once.
+    """Each Ctrl-C, noted and raised at the end; the second is raised at once.
 
     Raised while a module loads, it is dropped in the clean-up of the import, or Python ends by the signal and
     not with the exit code, where a string is executed, as dataclasses do.
@@ -97,6 +97,8 @@ def _interrupts() -> Iterator[list[int]]:
     signal.signal(signal.SIGINT, noticed)
     try:
         yield seen
+        if seen:
+            raise KeyboardInterrupt
     finally:
         signal.signal(signal.SIGINT, before)
 
