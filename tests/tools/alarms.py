@@ -2,7 +2,7 @@
 
 import datetime
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import partial
 from pathlib import Path
 
@@ -50,7 +50,7 @@ from verification.evidence.alarm_record import (
     write_record,
 )
 from verification.evidence.judged_source import source_hash
-from verification.judging.verdict import Outcome
+from verification.judging.verdict import Outcome, compare
 from verification.regression.junit_xml import junit_xml
 from verification.regression.run_exit_codes import exit_code
 from verification.running.case_result import CaseResult, RunInfo
@@ -169,7 +169,7 @@ def counted(results: Sequence[CaseResult], kind: str, seed: int, info: RunInfo) 
         *((r, nothing) for r in results if not r.verdicts),
     ]
     alarms = [Alarm(r.name, r.title, *row) for r, row in found if row[3] is not Outcome.AGREES]
-    return Campaign(
+    made = Campaign(
         kind,
         seed,
         len(results),
@@ -184,8 +184,8 @@ def counted(results: Sequence[CaseResult], kind: str, seed: int, info: RunInfo) 
         info.machine,
         dict(info.versions),
         tuple(_ratios(results, source) for source in METHODS),
-        source_hash("alarms" if kind == KINDS[-1] else "alarms of spheres"),
     )
+    return replace(made, source=source_hash(made.judged))
 
 
 def with_campaign(record: AlarmRecord | None, new: Campaign) -> AlarmRecord:
@@ -199,22 +199,17 @@ def _largest(result: CaseResult) -> float:
     """Largest difference over the sum of both uncertainties in the comparisons of ``result``."""
     profiles, largest = {(p.quantity, p.line, p.source): p for p in result.profiles}, 0.0
     for claim, verdict in result.verdicts:
-        a, b, size = (
-            profiles.get((name, line, source))
-            for name, line, source in (
-                *((claim.quantity, claim.line, source) for source in claim.between),
-                ("contact_radius", "contact", claim.between[1]),
-            )
-        )
-        if a is None or b is None or a.uncertainty is None or b.uncertainty is None or verdict.judged is None:
+        if verdict.judged is None:
             continue
-        difference, edge = np.abs(a.value - b.value), 0.0 if size is None else float(size.value[0])
-        counted = difference > LEAST * verdict.judged.scale
-        counted &= np.abs(np.abs(a.position) - edge) >= claim.edge * edge
-        U = (a.uncertainty + b.uncertainty)[counted]
-        largest = max(
-            largest, float((difference[counted] / np.maximum(U, np.finfo(float).tiny)).max(initial=0))
-        )
+        a, b = (profiles[claim.quantity, claim.line, source] for source in claim.between)
+        edge = float(profiles["contact_radius", "contact", b.source].value[0]) if claim.edge else 0.0
+        excluded = np.abs(np.abs(a.position) - edge) < claim.edge * edge
+        compared = compare(a, b, scale=verdict.judged.scale, excluded=excluded)
+        if compared.uncertainty is not None:
+            difference = np.abs(compared.difference)
+            counted = compared.judged & (difference > LEAST)
+            U = np.maximum(compared.uncertainty, np.finfo(float).tiny)
+            largest = max(largest, float((difference / U)[counted].max(initial=0.0)))
     return largest
 
 

@@ -7,16 +7,15 @@ ratio : E1*/E2* of coating and substrate, E1/E2 where both have one nu;   thickn
 width : a_h/R;   friction : f;   ball : share of the ball in the contact's compliance, E*/E_ball*, 0 rigid.
 """
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import prod
 from pathlib import Path
 
 import numpy as np
 
 from verification.problem.array_types import Array
 from verification.problem.coated_contact import CoatedContact
+from verification.problem.grid_interpolation import contracted, interpolated, window
 from verification.running.json_records import RecordFile
 from verification.sources.assumptions.contact_change import SCALARS, Change
 
@@ -74,8 +73,6 @@ def places_of(problem: CoatedContact) -> tuple[Place, ...]:
 
 SHIPPED = Path(__file__).parent / "shipped"
 SCHEMA = "coatcheck-assumptions/2"
-KINK = 0.05  # of the largest value around
-SAFETY = 2.0  # of the error of interpolation, over its estimate
 SAME = 1e-6  # relative; nearer to a fixed coordinate a problem has it
 WORDS = {
     "ratio": "E1/E2",
@@ -199,13 +196,16 @@ class AssumptionMap:
         positions = [axis.position(getattr(place, axis.name)) for axis in self.axes]
         scale = np.prod([self._scale(axis, getattr(place, axis.name)) for axis in self.axes], axis=0)
         below = [getattr(place, axis.name) < axis.values[0] * (1 - SAME) for axis in self.axes]
+        nodes = [axis.nodes for axis in self.axes]
         # with fewer nodes where the model had no answer at some of four
         for most in (4, 2):
-            value, error = interpolated(self._scaled, self.axes, positions, below, most)
+            value, error = interpolated(
+                self._scaled, [axis.nodes for axis in self.axes], positions, below, most
+            )
             if np.isfinite(value).any():
                 break
-        near = [_window(axis.nodes, x, 2) for axis, x in zip(self.axes, positions, strict=True)]
-        return value * scale, (error + _contracted(self.uncertainty / self._scales, near)) * scale
+        near = [window(along, x, 2) for along, x in zip(nodes, positions, strict=True)]
+        return value * scale, (error + contracted(self.uncertainty / self._scales, near)) * scale
 
     @cached_property
     def _scaled(self) -> Array:
@@ -234,59 +234,6 @@ class AssumptionMaps:
     def of(self, assumption: str) -> AssumptionMap | None:
         """The map of ``assumption``; None where it was not measured."""
         return next((one for one in self.maps if one.assumption == assumption), None)
-
-
-def interpolated(
-    table: Array, axes: Sequence[MapAxis], positions: Sequence[float], below: Sequence[bool], most: int
-) -> tuple[Array, Array]:
-    """Values of ``table`` (quantities, *axes) at ``positions``, each with an estimate of its error.
-
-    Polynomials through the ``most`` nearest nodes of each axis. The error is twice the distance from those
-    through one node less, of two nodes from the nearer, summed over the axes, with a share of the largest
-    value around; it vanishes at a node.
-    below : axes whose first node stands for smaller values, with the step to the second as error.
-    """
-    along = list(zip(axes, positions, strict=True))
-    full = [_window(axis.nodes, x, most) for axis, x in along]
-    near = [_window(axis.nodes, x, 2) for axis, x in along]
-    value, error = _contracted(table, full), np.zeros(table.shape[0])
-    for j, (axis, x) in enumerate(along):
-        nodes, chosen, factor = axis.nodes, list(full[j]), SAFETY
-        fewer = [[i for i in chosen if i != end] for end in (chosen[0], chosen[-1]) if end not in near[j]]
-        if len(chosen) == 2:
-            fewer = [[min(chosen, key=lambda i: abs(nodes[i] - x))]]
-        if below[j] and nodes.size > 1:
-            fewer, factor = [[1]], 1.0
-        found = (_contracted(table, [*full[:j], _lagrange(nodes, x, some), *full[j + 1 :]]) for some in fewer)
-        error += np.max([np.zeros_like(error), *(factor * np.abs(one - value) for one in found)], axis=0)
-    # a kink, as of a peak that moves off the axis, may escape the polynomials
-    cell = table[np.ix_(range(table.shape[0]), *(list(weights) for weights in near))]
-    between = max((4 * prod(w.values()) for w in near if len(w) == 2), default=0.0)
-    return value, error + KINK * between * np.abs(cell).max(axis=tuple(range(1, cell.ndim)))
-
-
-Weights = Mapping[int, float]  # by index of a node
-
-
-def _contracted(table: Array, weights: Sequence[Weights]) -> Array:
-    for along in reversed(weights):
-        chosen = [i for i, weight in along.items() if weight]
-        table = table[..., chosen] @ np.array([along[i] for i in chosen])
-    return table
-
-
-def _lagrange(nodes: Array, x: float, chosen: Sequence[int]) -> Weights:
-    """Weights of the polynomial through the ``chosen`` nodes."""
-    return {
-        i: float(np.prod([(x - nodes[j]) / (nodes[i] - nodes[j]) for j in chosen if j != i])) for i in chosen
-    }
-
-
-def _window(nodes: Array, x: float, most: int) -> Weights:
-    """Weights of the polynomial through the ``most`` nodes around ``x``, or through all there are."""
-    right = int(np.clip(np.searchsorted(nodes, x), min(1, nodes.size - 1), nodes.size - 1))
-    first = int(np.clip(right - most // 2, 0, max(nodes.size - most, 0)))
-    return _lagrange(nodes, x, range(first, min(first + most, nodes.size)))
 
 
 _FILE = RecordFile(AssumptionMaps, "assumptions.json", (SCHEMA,), "maps of the assumptions", "make it again")

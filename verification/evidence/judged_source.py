@@ -5,13 +5,14 @@ from typing import Any
 from verification.running.provenance import fingerprint
 
 _METHODS = ("semianalytic", "fem_reference", "verification.sources")
+_VERDICTS = (*_METHODS, "verification.judging", "verification.sampling")
 _COMPARING = ("measured_modulus", "validation_metric")
 # The packages that each record judges. Enclosures are proven without any, and held against each run.
 JUDGED = {
     "code": _METHODS,
-    "faults": (*_METHODS, "verification.judging", "verification.sampling"),
-    "alarms": (*_METHODS, "verification.judging", "verification.sampling"),
-    "alarms of spheres": (*_METHODS, "verification.judging", "verification.sampling"),
+    "faults": _VERDICTS,
+    "alarms": _VERDICTS,
+    "alarms of spheres": _VERDICTS,
     "maps": ("verification.sources.assumptions",),
     "validation": (*_METHODS, *(f"verification.validation.{name}" for name in _COMPARING)),
 }

@@ -170,8 +170,8 @@ def false_alarms() -> str:
         "agree",
         "inconclusive",
         "comparisons",
-        "false alarms",
-        "difference/$U$",
+        "with a false alarm",
+        "largest difference/$U$",
     ]
     of_value = ["random", "method", "values", "error within $U$", "largest error/$U$", "median of $U$/error"]
     tables = table(head, drawn, 2), table(of_value, of_values, 2)
