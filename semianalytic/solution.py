@@ -217,13 +217,12 @@ class Solution:
         other = self._other("peak_pressure")
         shape = self._level.shape
         if shape is not None:
-            shift = self._uncertain_reach
-            widened = (shape.widened(s).pressure(x, y) for s in (-shift, shift))
-            moved = np.max([np.abs(q - p) for q in widened], axis=0)
             at_surface = PatchPoints(x, y, body=points.body, frame=points.frame)
             U = self._of_patch_size(at_surface, "pressure") + other
-            cut = at_edge(points) & (self._to_edge(x, y) < numbers.CUT * self.diagnostics.patch_size + shift)
-            return PatchAnswer(p, U + np.where(cut, 0.0, moved))
+            shift, moves = self._uncertain_reach, at_edge(points)
+            at = [np.where(moves, *two) for two in zip(self._out_of_cut(x, y, 0.0), (x, y), strict=True)]
+            of_level, moved = self._level.pressure(*at), (shape.widened(s) for s in (-shift, shift))
+            return PatchAnswer(p, U + np.max([np.abs(q.pressure(*at) - of_level) for q in moved], axis=0))
         changed = interpolated(self.nodes, self._refinement, x, y, order=1)
         least = other + numbers.BY_PATCHES[1] * self.peak_pressure
         return PatchAnswer(p, changed + 2 * least + self._rim(x, y, 0.0))
@@ -337,9 +336,9 @@ class Solution:
         """Change of the stress [Pa] by the uncertain radius, (3, 3) + points.
 
         Of a wider contact of this load, at fixed places or, in the frame "edge", at places that move with it;
-        there by the move alone too, but in the patches that the edge cuts: the pressure may be right where
-        the edge is not. At fixed places within ``NEAR_EDGE`` patches of the edge, where it is not in
-        proportion, by its largest move in any direction, out and in.
+        there by the move alone too, in the patches that the edge cuts as beside them. At fixed places within
+        ``NEAR_EDGE`` patches of the edge, where it is not in proportion, by its largest move in any
+        direction, out and in.
         """
         level, moves = self._level, at_edge(points)
         shift, reach = self._stated.contact_radius, self._uncertain_reach
@@ -352,8 +351,15 @@ class Solution:
             to = (np.where(moves, along[0], x), np.where(moves, along[1], y))
         asked = [(shift, to), (0.0, to)] if moves.any() else [(shift, to)]
         change, *by_move = fields.stress_changes(level, solid, asked, x, y, z, points.layer)
+        cut = moves & (patches < numbers.CUT)
         for one in by_move:
-            change = np.maximum(change, np.where(patches < numbers.CUT, 0.0, one))
+            change = np.maximum(change, np.where(cut, 0.0, one))
+        if cut.any():
+            assert level.shape is not None
+            at = self._out_of_cut(x[cut], y[cut], z[cut])
+            moved = [(0.0, level.shape.widened(shift).matching(level.shape, *at))]
+            (beside,) = fields.stress_changes(level, solid, moved, *at, z[cut], points.layer)
+            change[..., cut] = np.maximum(change[..., cut], beside)
         if (fixed := (patches < numbers.NEAR_EDGE) & ~moves).any():
             at = x[fixed], y[fixed]
             out_and_in = [(one, at) for one in (-reach, reach) if one != shift]
@@ -379,6 +385,13 @@ class Solution:
             )
             + self._level.edge_error,
         )
+
+    def _out_of_cut(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> tuple[Array, Array]:
+        """The places [m], those in the patches that a smooth edge cuts moved out to beside these patches."""
+        shape, reach = self._level.shape, self._uncertain_reach
+        assert shape is not None
+        widest = numbers.CUT * self.diagnostics.patch_size + reach
+        return shape.away(x, y, np.sqrt(np.maximum(widest**2 - np.square(z), 0.0)))
 
     def _to_edge(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Distance of points from a smooth edge [m], about."""

@@ -148,6 +148,15 @@ class Shape:
         t, s2, _ = self.polynomials(x, y)
         return np.asarray(1 - t / (1 + np.sqrt(s2)))
 
+    def away(self, x: ArrayLike, y: ArrayLike, least: ArrayLike) -> tuple[Array, Array]:
+        """x, y [m], or where those nearer to the edge are ``least`` [m] from it, about, on the ray there."""
+        x, y, share = np.asarray(x, dtype=float), np.asarray(y, dtype=float), self.share(x, y)
+        least = np.asarray(least) / min(self.axes)
+        to = np.where(share > 1, np.maximum(share, 1 + least), np.minimum(share, np.maximum(1 - least, 0.0)))
+        by, (x0, y0) = to / np.where(share == 0, 1.0, share), self.centre
+        centre = np.copysign(x0, x) if self.twin else x0
+        return centre + by * (x - centre), y0 + by * (y - y0)
+
     def polynomials(self, x: ArrayLike, y: ArrayLike) -> tuple[Array, Array, Array]:
         """t, s^2 and H_n, (k,) + points, at x, y [m], broadcast."""
         return self._in_frame(*self._framed(np.asarray(x, dtype=float), np.asarray(y, dtype=float)))

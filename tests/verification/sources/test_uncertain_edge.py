@@ -23,6 +23,17 @@ def solved(name):
     return solve_exactly(PROBLEMS[name]), solve_semianalytic(PROBLEMS[name])
 
 
+def test_a_field_in_the_patches_that_the_edge_cuts_is_as_uncertain_by_the_edge_as_beside_them():
+    exact, found = solved("stiff layer, deep")
+    d, a = found.diagnostics.patch_size, found.contact_radius
+    share = 1 - np.array([1.7, 1.4, 1.0, 0.3, 0.05]) * d / a  # the first beside them
+    for field, where in (("pressure", ()), ("stress", (0, 0)), ("stress", (2, 2))):
+        value, U = (v[where] for v in found.sample(Points(share * a, frame="edge"), field))
+        assert (U[1:] > 0.9 * U[0]).all()
+        true, V = (v[where] for v in exact.sample(Points(share * exact.contact_radius), field))
+        assert (np.abs(value - true) <= 0.5 * (U + V)).all()
+
+
 @pytest.mark.parametrize("frame", ["fixed", "edge"])
 @pytest.mark.parametrize("name", PROBLEMS)
 def test_a_stress_is_within_its_uncertainty_however_far_from_the_edge(name, frame):
