@@ -90,13 +90,15 @@ def _tables(
     grid = USUAL if sum(body.thickness) * max(moduli) / min(moduli) / scale < 1e4 else LONG
     beyond = grid.radii >= numbers.NEAR_AXIS
     response = partial(frf, grid.wavenumbers / scale, z, layer, **body.layers, excess=excess)
-    radial = []
-    for F, order in columns(lambda load: response(load=load), body.friction):
-        inner = near_axis(F, order, scale, scale * _INNER, over_k=over_k, grid=grid)
-        outer = hankel(F, order, scale, over_k=over_k, grid=grid)[:, beyond]
-        radial.append(np.concatenate([inner, outer], axis=1))
+    responses, orders = zip(*columns(lambda load: response(load=load), body.friction), strict=True)
+    radial = np.empty((len(orders), z.size, _INNER.size + np.count_nonzero(beyond)))
+    for order in set(orders):  # those of one order together, with the transform's coefficients
+        some = np.equal(orders, order)
+        F = np.array(responses)[some]
+        radial[some, :, : _INNER.size] = near_axis(F, order, scale, scale * _INNER, over_k=over_k, grid=grid)
+        radial[some, :, _INNER.size :] = hankel(F, order, scale, over_k=over_k, grid=grid)[..., beyond]
     nodes = np.arcsinh(np.concatenate([_INNER, grid.radii[beyond]]))
-    found = [PointForce(CubicSpline(nodes, table), scale) for table in np.stack(radial, axis=-1)]
+    found = [PointForce(CubicSpline(nodes, table), scale) for table in np.moveaxis(radial, 0, -1)]
     while len(body.tables) >= numbers.KEPT_TABLES:
         del body.tables[next(iter(body.tables))]
     body.tables[key] = found
