@@ -17,7 +17,7 @@ from fem_reference.elasticity.axisymmetric import Discretisation
 from fem_reference.elasticity.recovery import HarmonicField, stress_of
 from fem_reference.element_answer import ElementAnswer, PlainFields
 from fem_reference.meshing.location import LocatedPoints, SolidPoints, solid_points
-from fem_reference.meshing.mesh import Grading, MeridianMesh, meridian_mesh, surface_size
+from fem_reference.meshing.mesh import Grading, meridian_mesh, surface_size
 from fem_reference.not_round.harmonic_compliance import HarmonicCompliance
 from fem_reference.not_round.star_contact import StarPressure
 from fem_reference.scaling import LayeredSolid, Scales
@@ -205,10 +205,6 @@ class PressedSolid(PlainFields):
     def load(self) -> float:
         """Resultant of the pressure [N]."""
         return self._fine.load * self._units.load
-
-    @cached_property
-    def mesh(self) -> MeridianMesh:
-        return self._fine.discretisation.mesh
 
     def sample(self, points: Any, quantity: str, uncertainty: bool = True) -> ElementAnswer:
         """Value of a quantity at points, with its uncertainty when it was estimated.

@@ -220,8 +220,6 @@ def _start(problem: Problem) -> Array:
 
 def _choose_preconditioner(state: _State, problem: Problem) -> None:
     """Cut P off at the edge, later drop it; what conjugate directions have been built is discarded."""
-    if not state.on_set:
-        return
     if state.iterations == numbers.PRECONDITIONED_ITERATIONS:
         # where the preconditioner misleads, the iterate is far from the solution: start from the first guess
         state.p = _start(problem)
