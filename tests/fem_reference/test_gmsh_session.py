@@ -66,6 +66,19 @@ def test_gmsh_is_shut_down_and_signals_are_untouched():
     assert signal.getsignal(signal.SIGINT) is before
 
 
+def test_without_pipes_that_close_gmsh_meshes_the_same(monkeypatch):
+    """As on Windows, where there is no such signal."""
+    expected = mesh()
+    try:
+        with monkeypatch.context() as patch:
+            patch.delattr(signal, "SIGPIPE")
+            found = mesh()
+    finally:
+        signal.signal(signal.SIGPIPE, signal.SIG_IGN)  # which gmsh resets
+    np.testing.assert_array_equal(found.points, expected.points)
+    assert not gmsh.isInitialized()
+
+
 @pytest.mark.slow
 def test_threads_and_processes_get_the_same_answers():
     # Another number of threads sums in another order.

@@ -1,6 +1,8 @@
 """Constrained solves: by dense matrices, in single and double precision, by Pardiso of the extra `fast`."""
 
+import sys
 from importlib.util import find_spec
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -75,6 +77,32 @@ def test_one_load_in_single_precision_is_refined_or_solved_in_double(steps, expe
     assert precisions == expected
     np.testing.assert_allclose(found.residual, 0.0, rtol=0, atol=1e-11)
     np.testing.assert_allclose(found.u, dense(K, given, np.unique(fixed), load)[:, 0], rtol=0, atol=1e-11)
+
+
+class DensePardiso:
+    """Pardiso's face for symmetric positive definite matrices, of which it takes the upper triangle alone."""
+
+    def __init__(self, mtype):
+        assert mtype == 2
+        self.libmkl = SimpleNamespace(_name="mkl", MKL_Set_Threading_Layer=lambda layer: None)
+        self.free_memory, self.set_iparm = (lambda everything: None), (lambda which, value: None)
+
+    def factorize(self, upper):
+        assert sp.tril(upper, -1).nnz == 0
+        whole = upper.toarray() + sp.triu(upper, 1).toarray().T
+        self.factor = np.linalg.cholesky(whole)
+
+    def solve(self, upper, load):
+        return np.linalg.solve(self.factor.T, np.linalg.solve(self.factor, load))
+
+
+def test_pardiso_is_given_the_upper_triangle_of_the_stiffness(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pypardiso", SimpleNamespace(PyPardisoSolver=DensePardiso))
+    monkeypatch.setattr(linear_system, "_PARDISO", True)
+    monkeypatch.setenv("PYPARDISO_MKL_RT", "mkl")
+    K, given, fixed, load = problem(1)
+    found = constrained_solve(K, given, fixed, load)
+    np.testing.assert_allclose(found.u, dense(K, given, np.unique(fixed), load), rtol=0, atol=1e-11)
 
 
 needs_pardiso = pytest.mark.skipif(

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from semianalytic import uncertainty
 from semianalytic.inputs import Body, Numerics
 from semianalytic.patches.contact import Contact
 from semianalytic.patches.grid import Grid, Window
@@ -32,3 +33,11 @@ def test_staircase_of_a_disc_is_a_quarter_of_a_patch_of_its_radius(quarter):
     found = Level(grid, disc, np.pi, 0)
     assert found.radius == pytest.approx(1, rel=1e-3)
     assert found.edge_error == pytest.approx(grid.d / 4, rel=1e-2)
+
+
+def test_patches_alone_are_refined_until_their_uncertainty_no_longer_falls():
+    """Without a smooth edge no further grid can be the first to resolve it."""
+    grids = [Grid(n, 2.4 / n) for n in (65, 91, 129, 183)]
+    levels = [Level(grid, Contact.of_load(np.where(grid.radius < 1, 1.0, 0.0)), np.pi, 0) for grid in grids]
+    assert uncertainty.is_stalled(1e-5, [2e-4, 2e-4, 2e-4], levels)
+    assert not uncertainty.is_stalled(1e-5, [4e-4, 2e-4, 1e-4], levels)

@@ -52,6 +52,19 @@ def test_even_indenter_is_solved_on_a_quarter_as_on_the_whole(patches, curved, E
     np.testing.assert_allclose(quarter.patch_pressure, whole.patch_pressure, rtol=0, atol=atol)
 
 
+def test_a_shape_that_is_even_on_coarse_grids_alone_is_solved_on_the_whole_of_the_fine_one():
+    """Its last digit differs at a corner beyond the centres of the coarser grid's patches."""
+
+    def profile(x, y):
+        beyond = (x > 2 * A_H * (1 - 1 / 100)) & (y > 2 * A_H * (1 - 1 / 100))
+        return ellipsoid(x, y) * np.where(beyond, 1 + 2**-52, 1)
+
+    even, whole = indent(ellipsoid), indent(profile)
+    assert not np.array_equal(whole.patch_pressure, whole.patch_pressure[::-1])
+    np.testing.assert_allclose(whole.patch_pressure, even.patch_pressure, rtol=0, atol=1e-6 * P_H)
+    assert whole.approach == pytest.approx(even.approach, rel=1e-9)
+
+
 @pytest.mark.parametrize("control", [{"load": W}, {"load": None, "approach": A_H**2 / R}])
 def test_heights_count_from_any_level(control):
     s, raised = (

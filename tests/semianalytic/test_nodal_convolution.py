@@ -50,6 +50,15 @@ def test_field_on_sites_needs_no_interpolation(sites, columns):
     np.testing.assert_allclose(field, exact, rtol=0, atol=1e-12 * np.abs(exact).max())
 
 
+def test_on_the_axis_of_even_forces_what_is_odd_across_it_vanishes():
+    even = Lattice(-0.7, -0.45, 0.1, 0.15, np.hstack([half := RNG.random((23, 4)), half[:, -2::-1]]))
+    i = np.array([3, -2, 12])
+    x, y = even.x0 + i * even.dx, np.zeros(3)
+    field = between_sites(x, y, even, lambda m, n: newton(m * even.dx, n * even.dy), (1,), order=4)
+    np.testing.assert_allclose(field, plain_sum(x, y, even), rtol=0, atol=1e-12 * np.abs(field).max())
+    assert not field[1].any()
+
+
 def test_coarser_lattice_keeps_moments_up_to_the_fifth():
     coarse = LATTICE.coarser()
 

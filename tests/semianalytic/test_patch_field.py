@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from semianalytic import numbers
 from semianalytic.inputs import Body
 from semianalytic.patches.prescribed import Prescribed, patch_mean
 from semianalytic.stresses import patch_field, subsurface
@@ -51,15 +52,17 @@ def test_many_depths_are_interpolated_to_what_each_gives_alone():
     np.testing.assert_allclose(together[:, :5], np.stack(alone, axis=-1), rtol=0, atol=2e-6)
 
 
-def test_deep_below_many_patches_the_forces_of_coarser_lattices_are_gathered():
+@pytest.mark.parametrize(("n", "wide"), [(1025, numbers.WIDE), (257, 40)])
+def test_deep_below_many_patches_the_forces_of_coarser_lattices_are_gathered(n, wide, monkeypatch):
     """Below more patches than are summed one by one: on and off the axis as from the rings."""
-    n, body = 1025, BODIES["two coatings"]
+    monkeypatch.setattr(numbers, "WIDE", wide)
+    body = BODIES["two coatings"]
     x = (np.arange(n) - n // 2) * 2.24 / n
     at = np.array([0.0, 0.3, 0.8]), np.array([0.0, 0.1, -0.4]), np.array([0.12, 0.2, 0.4])
     layer = body.layer_of(at[2], None)
     exact = subsurface.stress(*at, layer, pressures=[Disc(1.0, HERTZ.of_square)], body=body)[0]
     found = patch_field.stress(*at, layer, grid_x=x, pressure=patch_mean(HERTZ, x, 2.24 / n), body=body)
-    np.testing.assert_allclose(found, exact, rtol=0, atol=2e-6)
+    np.testing.assert_allclose(found, exact, rtol=0, atol=2e-6 * (1025 / n) ** 2)
 
 
 def test_a_single_patch_deep_down_is_a_point_force():
@@ -74,5 +77,7 @@ def test_a_single_patch_deep_down_is_a_point_force():
     np.testing.assert_allclose(found, force(*at, z), rtol=0, atol=1e-2 * np.abs(found).max())
 
 
-def test_no_points_give_no_stress():
+def test_no_points_and_no_pressure_give_no_stress():
+    unloaded = GRID | {"pressure": np.zeros((N, N))}
+    assert not patch_field.stress(np.zeros(2), 0.1, [0.0, 0.2], 0, **unloaded, body=BODIES["bare"]).any()
     assert patch_field.stress(np.zeros(0), 0.0, 0.0, 0, **GRID, body=BODIES["bare"]).shape == (6, 0)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import semianalytic
+from semianalytic.patches import nested
 from verification.problem.point_answers import EDGE, Points
 from verification.sources.references import integral_equation
 
@@ -173,6 +174,24 @@ def test_approach_control_inverts_load_control(coated):
     assert s.contact_radius == pytest.approx(coated.contact_radius, rel=1e-5)
 
 
+def test_approach_control_finds_a_contact_far_narrower_than_the_sphere_at_that_depth():
+    """A film of 1000 times its substrate's modulus bends: the first guess is the radius sqrt(R delta)."""
+    film = ((1000 * E, NU, 0.1 * A_H),)
+    by_load = solve(film, patches=65)
+    assert by_load.contact_radius < 0.5 * (R * by_load.approach) ** 0.5
+    by_approach = solve(film, load=None, approach=by_load.approach, patches=65)
+    # on patches of another size, a tenth of the film's thickness and more
+    assert by_approach.diagnostics.load == pytest.approx(W, rel=1e-3)
+
+
+def test_the_first_square_is_forgotten():
+    """An ellipsoid whose radii are far below the one that the first square is chosen by."""
+    given = {"indenter": ("ellipsoid", (1.2e-3, 1e-3)), "patches": 65}
+    wide, near = solve(radius=1.0, **given), solve(radius=1.1e-3, **given)
+    assert wide.peak_pressure == pytest.approx(near.peak_pressure, rel=1e-4)
+    assert wide.approach == pytest.approx(near.approach, rel=1e-4)
+
+
 def test_uncertainty_brackets_the_error_and_not_by_orders():
     s = solve(edge_correction=False, estimate_uncertainty=True)
     u = s.uncertainty
@@ -301,6 +320,20 @@ def test_patches_are_refined_to_the_accuracy_or_as_far_as_allowed(monkeypatch):
     stopped = solve(STIFF, **given, accuracy=1e-9)
     assert stopped.diagnostics.patches_per_side <= 100
     assert reached(stopped) > 1e-9
+
+
+def test_where_a_finer_grid_does_not_converge_the_last_one_states_what_it_reached(monkeypatch):
+    given, solve_on = {"patches": 65, "estimate_uncertainty": True}, nested.solve_on
+    rough = solve(STIFF, **given, accuracy=None)
+
+    def short(grid, *others):
+        if grid.n > 65:
+            raise semianalytic.NotConverged("stopped short")
+        return solve_on(grid, *others)
+
+    monkeypatch.setattr(nested, "solve_on", short)
+    stopped = solve(STIFF, **given, accuracy=1e-9)
+    assert (stopped.contact_radius, stopped.uncertainty) == (rough.contact_radius, rough.uncertainty)
 
 
 def test_a_smooth_edge_on_the_finest_grid_alone_has_an_uncertainty():

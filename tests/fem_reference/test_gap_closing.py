@@ -1,0 +1,71 @@
+"""A pressure that closes the gap: what is refused, how rich it becomes, two bodies of one kind."""
+
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from fem_reference import ElementsNotConverged, solve_shape
+from fem_reference.not_round.gap_closing import Closed, as_rich_as_helps
+from fem_reference.not_round.star_contact import StarPressure
+from verification.sources.references.hertz_ellipse import pressed_ellipsoid
+
+STEEL, RADII, LOAD = (210e9, 0.3), (16e-3, 6e-3), 20.0
+ROUGH = {"order": 2, "harmonics": 12, "surface": 0.3, "size": 0.6, "degree": 8, "far": 100.0}
+
+
+def solved(**changes):
+    given = {"indenter": ("ellipsoid", RADII), "radius": 9.8e-3, "load": LOAD, "coatings": ()}
+    return solve_shape(**given | ROUGH | {"substrate": STEEL, "estimate_uncertainty": False} | changes)
+
+
+def test_of_two_equal_bodies_one_is_the_mirror_image_of_the_other():
+    """Sliding too, which acts on them in opposite directions."""
+    found = solved(ball=(*STEEL, ()), friction=0.2)
+    exact = pressed_ellipsoid(*RADII, LOAD, *STEEL, STEEL)
+    # on so coarse a mesh
+    assert found.peak_pressure == pytest.approx(exact.peak_pressure, rel=1e-2)
+    assert found.approach == pytest.approx(exact.approach, rel=1e-2)
+    x, z = 0.4 * exact.axes[0], 0.5 * exact.axes[1]
+    mirror = np.array([[1, -1, -1], [-1, 1, 1], [-1, 1, 1]])
+    on_ball, on_flat = found.stress(x, 0.0, z, body="ball"), found.stress(-x, 0.0, z)
+    np.testing.assert_allclose(on_ball, mirror * on_flat, rtol=0, atol=1e-12 * exact.peak_pressure)
+
+
+def test_a_ball_without_a_modulus_is_refused():
+    with pytest.raises(ValueError, match="E"):
+        solved(ball=(-1.0, 0.3, ()))
+
+
+def test_a_pressure_that_pulls_is_refused():
+    pushing = StarPressure.of_ellipse(0.0, (1.0, 0.4), 1.0, 2, 12)
+    pulling = replace(pushing, coefficients=-pushing.coefficients)
+    with pytest.raises(ElementsNotConverged, match="the pressure under the punch is negative"):
+        Closed((), pulling, 1.0, 3, True, np.zeros((1, 1))).check(lambda x, y: 0 * x, "punch")
+
+
+@dataclass
+class OfDegree:
+    """A contact whose edge is as uncertain as ``errors`` says of its degree."""
+
+    found: SimpleNamespace
+    companion: SimpleNamespace
+    error: float
+
+    def uncertain(self, _):
+        return self.error
+
+
+@pytest.mark.parametrize(
+    ("errors", "resting", "best"),
+    [((4, 3, 2, 1), 14, 14), ((4, 1, 2, 3, 0.5), 16, 10), ((4, 3, 2, 1), 10, 10)],
+    ids=["richer is better", "richer is worse", "a richer one is not at rest"],
+)
+def test_a_pressure_is_as_rich_as_helps_and_rests(errors, resting, best):
+    def of_degree(degree):
+        one = SimpleNamespace(pressure=SimpleNamespace(degree=degree), converged=degree <= resting)
+        return OfDegree(one, one, errors[(degree - 8) // 2] if degree >= 8 else 9)
+
+    chosen, lower = as_rich_as_helps(of_degree(8), of_degree, 8 + 2 * (len(errors) - 1))
+    assert (chosen.found.pressure.degree, lower.found.pressure.degree) == (best, best - 2)
