@@ -37,6 +37,7 @@ from verification.study.friction_planes import (
     stress_at,
 )
 from verification.study.largest_stresses import (
+    LayerGrid,
     Located,
     Measure,
     Unstated,
@@ -206,9 +207,10 @@ class _Layers:
             unstated = replace(self.parts, stated=False)
             between, knots = inner_planes(unstated, self.problem.interfaces, layer)
             planes = [self.tops[layer], *between, *self.bases[layer : layer + 1]]
+            grid = LayerGrid.between(planes, knots, f)
             for quantity, measure in self._measures(layer).items():
                 on = [largest(one, measure, f) for one in planes]
-                within = inside(self.parts, planes, knots, f, measure) + self._between(on, measure)
+                within = inside(self.parts, grid, f, measure) + self._between(on, measure)
                 found = max([on[0], on[-1], *within], key=lambda at: at.value)
                 yield quantity, self.name(number), not self.residual[layer], found
 

@@ -13,6 +13,7 @@ Splines on either side of it, smooth up to the edge, meet at the solution's own 
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,9 @@ Curve = Callable[[Array], Array]
 XX, YY, ZZ, XZ = range(4)
 # factor of the response to p under x -> -x; that to q has the opposite sign
 PARITY = np.array([1.0, 1.0, 1.0, -1.0])
+PARITIES = np.concatenate([PARITY, -PARITY])
 LEAST = 33  # samples of a plane; below, the semi-analytical method sums point by point, which takes longer
+DENSE = 16  # points between two samples of a line
 MIRRORED = 5  # samples repeated beyond x = 0, so that the splines know the parity
 
 
@@ -74,26 +77,38 @@ def in_plane(sigma: Array) -> Array:
     return np.stack([sigma[component] for component in IN_PLANE.values()])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DepthLine:
     """Stress at one depth in one layer as a function of x and f.
 
-    knots : radii [m] of the samples.   fine, coarse : sigma_n and sigma_t over r, (4,) + shape of r, from all
-    the samples and from every other one.   edge : on the surface, uncertainty of values which move with the
-    contact edge, there and opposite, (2, 4).
+    knots : radii [m] of the samples.   fine, coarse : sigma_n, then sigma_t over r, (8,) + shape of r, from
+    all the samples and from every other one.   edge : on the surface, uncertainty of values which move with
+    the contact edge, there and opposite, (2, 4).
     """
 
     parts: Parts
     z: float
     layer: int
     knots: Array
-    fine: tuple[Curve, Curve]
-    coarse: tuple[Curve, Curve]
+    fine: Curve
+    coarse: Curve
     edge: Array | None = None
 
     def __call__(self, x: Array, friction: float) -> Array:
         """xx, yy, zz, xz [Pa] at signed ``x`` [m], (4,) + shape of ``x``."""
-        return _signed(self.fine, x, friction)
+        return _signed(self.fine(np.abs(x)), x, friction)
+
+    def course(self, friction: float) -> tuple[Array, Array]:
+        """x [m] on both sides, ``DENSE`` points between two knots, and the stress there; the last is kept."""
+        if friction not in self._courses:
+            x = both_sides(self.knots, DENSE)
+            self._courses.clear()
+            self._courses[friction] = x, self(x, friction)
+        return self._courses[friction]
+
+    @cached_property
+    def _courses(self) -> dict[float, tuple[Array, Array]]:
+        return {}
 
     def beside(self, x: float) -> Array:
         """The knots [m] around x, whose uncertainties count there: one, or two."""
@@ -103,12 +118,25 @@ class DepthLine:
 
     def interpolation(self, x: float, friction: float) -> Array:
         """Uncertainty [Pa] (4,) by the samples: 1/8 of the error with half of them."""
-        fine, coarse = (_signed(curve, np.array([x]), friction) for curve in (self.fine, self.coarse))
+        at = np.array([x])
+        fine, coarse = (_signed(curve(np.abs(at)), at, friction) for curve in (self.fine, self.coarse))
         return np.abs(fine - coarse)[:, 0] / 8
 
 
-def _signed(curves: tuple[Curve, Curve], x: Array, friction: float) -> Array:
-    normal, tangential = (curve(np.abs(x)) for curve in curves)
+def both_sides(knots: Array, fine: int) -> Array:
+    """Points from -knots[-1] to knots[-1], the trailing side first, ``fine`` between two knots."""
+    r = finer(knots, fine)
+    return np.concatenate([-r[:0:-1], r])
+
+
+def finer(points: Array, fine: int) -> Array:
+    """``points`` with each interval divided into ``fine`` equal ones."""
+    inner = points[:-1, None] + np.diff(points)[:, None] * np.arange(fine) / fine
+    return np.append(inner.ravel(), points[-1])
+
+
+def _signed(parts: Array, x: Array, friction: float) -> Array:
+    normal, tangential = parts[:4], parts[4:]
     left = x < 0
     sign = np.where(left, PARITY.reshape(4, *[1] * x.ndim), 1.0)
     return sign * (normal + friction * np.where(left, -1.0, 1.0) * tangential)
@@ -117,7 +145,7 @@ def _signed(curves: tuple[Curve, Curve], x: Array, friction: float) -> Array:
 def stress_at(parts: Parts, x: Array, z: Array, layer: int, friction: float) -> Array:
     """xx, yy, zz, xz [Pa] at points (x, 0, z), (4, n)."""
     normal, tangential, _ = replace(parts, stated=False)(np.abs(x), z, layer)
-    return _signed((lambda _: normal, lambda _: tangential), x, friction)
+    return _signed(np.concatenate([normal, tangential]), x, friction)
 
 
 def outer_planes(
@@ -169,15 +197,14 @@ def _depths(top: float, bottom: float, width: float) -> Array:
 def _planes(parts: Parts, knots: Array, depths: Array, layer: int) -> list[DepthLine]:
     """Planes at ``depths`` > 0, sampled at ``knots``, together: those around one point share its rings."""
     r, z = np.broadcast_arrays(knots, depths[:, None])
-    normal, tangential, _ = replace(parts, stated=False)(r, z, layer)
+    both = np.concatenate(replace(parts, stated=False)(r, z, layer)[:2])
 
-    def curves(i: int, keep: NDArray[np.int_]) -> tuple[Curve, Curve]:
-        at = knots[keep]
-        return _spline(at, normal[:, i, keep], PARITY), _spline(at, tangential[:, i, keep], -PARITY)
+    def curve(i: int, keep: NDArray[np.int_]) -> Curve:
+        return _spline(knots[keep], both[:, i, keep], PARITIES)
 
     every, half = np.arange(knots.size), _every_other(knots.size)
     return [
-        DepthLine(parts, float(at), layer, knots, curves(i, every), curves(i, half))
+        DepthLine(parts, float(at), layer, knots, curve(i, every), curve(i, half))
         for i, at in enumerate(depths)
     ]
 
@@ -195,12 +222,12 @@ def _surface(parts: Parts, a: float, h: float, reach: float) -> DepthLine:
     normal, tangential, bound = parts(around_edge(parts.solution), 0.0, 0)
     sides = np.stack([normal + g * tangential for g in (parts.friction, -parts.friction)])
     edge = edge_uncertainty(sides, bound, _change(parts))
-    normal, tangential, _ = replace(parts, stated=False)(knots, 0.0, 0)
+    both = np.concatenate(replace(parts, stated=False)(knots, 0.0, 0)[:2])
 
-    def joined(values: Array, parity: Array, keep: Callable[[int], NDArray[np.int_]]) -> Curve:
+    def joined(keep: Callable[[int], NDArray[np.int_]]) -> Curve:
         i, o = keep(inside), keep(eta.size)
-        within = _spline(theta[i], values[:, i], parity)
-        beyond = _spline(eta[o], values[:, inside - 1 + o], None)
+        within = _spline(theta[i], both[:, i], PARITIES)
+        beyond = _spline(eta[o], both[:, inside - 1 + o], None)
 
         def curve(r: Array) -> Array:
             s = r / a
@@ -208,10 +235,7 @@ def _surface(parts: Parts, a: float, h: float, reach: float) -> DepthLine:
 
         return curve
 
-    def curves(keep: Callable[[int], NDArray[np.int_]]) -> tuple[Curve, Curve]:
-        return joined(normal, PARITY, keep), joined(tangential, -PARITY, keep)
-
-    return DepthLine(parts, 0.0, 0, knots, curves(np.arange), curves(_every_other), edge)
+    return DepthLine(parts, 0.0, 0, knots, joined(np.arange), joined(_every_other), edge)
 
 
 def _change(parts: Parts) -> Array | None:
@@ -227,7 +251,7 @@ def _change(parts: Parts) -> Array | None:
 
 
 def _spline(at: Array, values: Array, parity: Array | None) -> Curve:
-    """Quintic spline through ``values`` (4, n); continued across 0 by ``parity`` where given."""
+    """Quintic spline through ``values`` (8, n); continued across 0 by ``parity`` where given."""
     if parity is not None:
         m = min(MIRRORED, at.size - 1)
         at = np.concatenate([-at[m:0:-1], at])

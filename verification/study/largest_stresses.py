@@ -23,6 +23,8 @@ from verification.study.friction_planes import (
     ZZ,
     DepthLine,
     Parts,
+    both_sides,
+    finer,
     inner_planes,
     outer_planes,
     stress_at,
@@ -41,7 +43,6 @@ Stress = Literal[
     "von_mises_substrate",
 ]
 QUANTITIES: tuple[str, ...] = get_args(Stress)
-DENSE = 16  # points between two samples of a line
 FINE = 8  # between two samples of a layer, each way
 
 
@@ -115,6 +116,7 @@ def quantities(
     z, n = problem.interfaces, len(problem.coatings)
     tops, bases = outer_planes(parts, z, z[0])
     inner = [inner_planes(parts, z, layer) for layer in range(n + 1)]
+    layered = [[tops[k], *planes, *bases[k : k + 1]] for k, (planes, _) in enumerate(inner)]
     tension: Measure = (lambda s: s[: YY + 1].max(axis=0)) if problem.elliptical else lambda s: s[XX]
     lines: dict[str, tuple[list[DepthLine], Measure]] = {
         "sigma_xx_surface": (tops[:1], tension),
@@ -126,6 +128,9 @@ def quantities(
     layers = {"von_mises_coating": range(n), "von_mises_substrate": range(n, n + 1)}
     found: dict[tuple[float, float], dict[str, Located]] = {}
     for f in frictions:
+        grids = [
+            LayerGrid.between(planes, knots, f) for planes, (_, knots) in zip(layered, inner, strict=True)
+        ]
         asked = [(name, line, measure) for name, (many, measure) in lines.items() for line in many]
         at = stated([largest(line, measure, f) for _, line, measure in asked], parts, f)
         alone: dict[str, list[tuple[int, Located]]] = {}
@@ -143,10 +148,10 @@ def quantities(
                     continue
                 candidates = []
                 for layer in body:
-                    planes = [tops[layer], *inner[layer][0], *bases[layer : layer + 1]]
                     measure = with_residual(von_mises, stress if layer == swept else 0.0)
-                    candidates += [largest(planes[0], measure, f), largest(planes[-1], measure, f)]
-                    candidates += inside(parts, planes, inner[layer][1], f, measure)
+                    outer = layered[layer][:: len(layered[layer]) - 1]
+                    candidates += [largest(plane, measure, f) for plane in outer]
+                    candidates += inside(parts, grids[layer], f, measure)
                 here[name] = max(candidates, key=lambda place: place.value)
             found[stress, f] = dict(zip(here, stated(list(here.values()), parts, f), strict=True))
     return found
@@ -162,8 +167,8 @@ def with_residual(measure: Measure, residual: float) -> Measure:
 
 def largest(line: DepthLine, measure: Measure, friction: float) -> Unstated:
     """The largest ``measure`` of the stresses along a line."""
-    x = _both_sides(line.knots, DENSE)
-    value = measure(line(x, friction))
+    x, stress = line.course(friction)
+    value = measure(stress)
     i = int(np.argmax(value))
     at, best = float(x[i]), float(value[i])
     if 0 < i < x.size - 1:
@@ -179,37 +184,37 @@ def largest(line: DepthLine, measure: Measure, friction: float) -> Unstated:
     return Unstated(best, 0.0, at, line.z, line.layer, measure, stress, line.beside(at), added, line.edge)
 
 
-def inside(
-    parts: Parts, planes: Sequence[DepthLine], knots: Array, friction: float, measure: Measure
-) -> list[Unstated]:
+@dataclass(frozen=True, eq=False)
+class LayerGrid:
+    """``stress`` [Pa], (4, nz, nx), between the planes of a ``layer`` at x and z [m], by interpolation."""
+
+    layer: int
+    x: Array
+    z: Array
+    stress: Array
+
+    @classmethod
+    def between(cls, planes: Sequence[DepthLine], knots: Array, friction: float) -> "LayerGrid":
+        """By splines through the ``planes``; x on both sides with ``FINE`` points between two ``knots``."""
+        x, depth = both_sides(knots, FINE), np.array([p.z for p in planes])
+        z = finer(depth, FINE)
+        stress = CubicSpline(depth, np.stack([p(x, friction) for p in planes]), axis=0)
+        return cls(planes[1].layer, x, z, np.moveaxis(stress(z), 1, 0))
+
+
+def inside(parts: Parts, grid: LayerGrid, friction: float, measure: Measure) -> list[Unstated]:
     """The largest ``measure`` between the planes of a layer; none where it lies on an outer one."""
-    x = _both_sides(knots, FINE)
-    depth = np.array([p.z for p in planes])
-    z = _finer(depth, FINE)
-    stress = CubicSpline(depth, np.stack([p(x, friction) for p in planes]), axis=0)
-    value = measure(np.moveaxis(stress(z), 1, 0))
+    x, z, layer, value = grid.x, grid.z, grid.layer, measure(grid.stress)
     i, j = np.unravel_index(int(np.argmax(value)), value.shape)
     if not (0 < i < z.size - 1 and 0 < j < x.size - 1):
         return []
     at_z = vertex(z[i - 1 : i + 2], value[i - 1 : i + 2, j])
     at_x = vertex(x[j - 1 : j + 2], value[i, j - 1 : j + 2])
-    there, layer = np.array([at_x]), planes[1].layer
+    there = np.array([at_x])
     stress_there = stress_at(parts, there, np.array([at_z]), layer, friction)[:, 0]
     best = float(measure(stress_there))
     interpolation = abs(best - float(value[i, j]))  # which may have located another point than the maximum
     return [Unstated(best, interpolation, at_x, at_z, layer, measure, stress_there, np.abs(there))]
-
-
-def _both_sides(knots: Array, fine: int) -> Array:
-    """Points from -knots[-1] to knots[-1], the trailing side first, ``fine`` between two knots."""
-    r = _finer(knots, fine)
-    return np.concatenate([-r[:0:-1], r])
-
-
-def _finer(points: Array, fine: int) -> Array:
-    """``points`` with each interval divided into ``fine`` equal ones."""
-    inner = points[:-1, None] + np.diff(points)[:, None] * np.arange(fine) / fine
-    return np.append(inner.ravel(), points[-1])
 
 
 def propagated(measure: Measure, s: Array, bound: Array) -> float:
