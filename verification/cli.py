@@ -1,5 +1,6 @@
 """The command line of coatcheck."""
 
+import gc
 import re
 import sys
 import tomllib
@@ -158,6 +159,7 @@ def _joined(words: Sequence[str]) -> list[str]:
 
 def main() -> None:
     """Entry of the ``coatcheck`` command."""
+    gc.disable()  # until the command begins: what its modules define stays
     try:
         words = _joined(sys.argv[1:])
         code = app(words, exit_on_error=False, print_error=False, result_action="return_value")

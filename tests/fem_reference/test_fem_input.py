@@ -36,6 +36,7 @@ BAD = [
     ({"size": 2.0}, "size = 2"),
     ({"far": 5.0}, "far boundary"),
     ({"load": 1e9}, "radius"),
+    ({"radius": "10 mm"}, "radius"),
 ]
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import semianalytic
+from semianalytic.inputs import undeformed_gap
 from semianalytic.patches import nested
 from verification.problem.point_answers import EDGE, Points
 from verification.sources.references import integral_equation
@@ -467,6 +468,13 @@ def test_stress_uncertainty_of_patches_covers_the_last_refinement(wide):
     assert np.all(np.abs(sigma - wide.coarser.stress(x, 0.0, 0.0)) <= U)
 
 
+def test_the_gap_of_a_sphere_lies_on_the_sphere_and_exceeds_that_of_its_parabola_by_its_next_term():
+    r = np.array([0.0, 0.1, 0.6, 1.0]) * R
+    gap, parabola = (undeformed_gap(name, R)(r) for name in ("sphere", "parabola"))
+    np.testing.assert_allclose(r**2 + (R - gap) ** 2, R**2, rtol=1e-15)
+    assert gap[1] - parabola[1] == pytest.approx(r[1] ** 4 / (8 * R**3), rel=1e-2)
+
+
 def test_flat_punch_has_the_stiffness_of_its_radius():
     a = 1e-4
     edge = 1e-2 * a
@@ -526,6 +534,8 @@ def test_wrong_layers_and_points_above_the_surface_are_refused(coated):
         coated.stress(0.0, 0.0, 0.5 * h, layer=2)
     with pytest.raises(ValueError, match="surface"):
         coated.stress(0.0, 0.0, -1e-9)
+    with pytest.raises(ValueError, match="'flat', the ball is rigid"):
+        coated.stress(0.0, 0.0, h, body="ball")
     # within rounding of the interface is on it
     on = coated.stress(0.0, 0.0, h * (1 + 1e-12), layer=0)
     np.testing.assert_allclose(on, coated.stress(0.0, 0.0, h, layer=0), rtol=1e-6, atol=1e-9 * P_H)

@@ -3,6 +3,7 @@
 The command line imports this for each command, so numpy and rich are imported where they are used.
 """
 
+import gc
 import json
 import os
 import sys
@@ -41,6 +42,7 @@ def with_exit_code(command: Callable[P, int]) -> Callable[P, int]:
         from verification.cases.toml_file import CaseError
         from verification.running.checked_files import StoreError
 
+        gc.enable()  # as before ``cli.main``
         try:
             return command(*args, **options)
         except (CommandError, CaseError, StoreError, OSError) as error:
