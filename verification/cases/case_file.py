@@ -12,7 +12,7 @@ from verification.cases.plausibility import (
     before,
     diameter_remark,
     likely_slips,
-    residual_warnings,
+    stress_warnings,
     warnings_of,
 )
 from verification.cases.solid_schema import (
@@ -345,7 +345,7 @@ def parse_case(raw: bytes, path: Path, over: int = 1) -> Case:
         numerics,
         text,
         checked.resolve,
-        (*warnings_of(problem), *residual_warnings(residual, checked.problem.temperature_change)),
+        (*warnings_of(problem), *stress_warnings(residual, limits, checked.problem.temperature_change)),
         limits,
         residual,
         {body: tuple(c.sublayers(over) for c in coatings) for body, coatings in graded.items()},

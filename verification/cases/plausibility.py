@@ -72,14 +72,25 @@ def diameter_remark(radius: float | None) -> tuple[str, ...]:
     return (f'{size} is a usual diameter of balls; if it is yours, give "d = {size}", in a file diameter',)
 
 
-def residual_warnings(
-    residual: Mapping[str, tuple[float, ...]], change: float | None = None
+def small_limits(limits: Limits) -> Iterator[str]:
+    """A line for each strength or hardness [Pa] below 1 MPa."""
+    for key, value in limits.items():
+        if value < RESIDUAL[0]:
+            given = f"{value:g} {'GPa' if value < 100 else 'MPa'}"
+            slip = f'{value:g} looks like {given[-3:]}, give "{given}"'
+            slip = "check its unit" if isinstance(value, InSI) else slip
+            yield f"{key} = {value:g} Pa is below 1 MPa; {slip}"
+
+
+def stress_warnings(
+    residual: Mapping[str, tuple[float, ...]], limits: Limits, change: float | None = None
 ) -> tuple[str, ...]:
     """A line for each residual stress [Pa] below 1 MPa or above 20 GPa in magnitude, or from heating.
 
-    change : of the temperature since deposition [K].
+    limits : strengths and hardness [Pa], for each below 1 MPa.   change : of the temperature since deposition
+    [K].
     """
-    found = []
+    found = [*small_limits({spoken(key): value for key, value in limits.items()})]
     worst = max((one for stresses in residual.values() for one in stresses), key=abs, default=0.0)
     if change is not None and change > 0 and worst:
         state = f"{as_stress(abs(worst))} of {'tension' if worst > 0 else 'compression'}"

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 
 from verification.cases import solid_schema
 from verification.cases.case_file import SUPPORTED, Sized, refuse_unfit_scales
-from verification.cases.plausibility import Limits, likely_slips, residual_warnings, warnings_of
+from verification.cases.plausibility import Limits, likely_slips, stress_warnings, warnings_of
 from verification.cases.solid_schema import BallEntry, Coating, Limited, Material, in_metres
 from verification.cases.toml_file import NO_SOURCE, CaseError, Strict, Text, read_bounded, read_toml
 from verification.cases.unit_numbers import Newtons, Units, units_of
@@ -384,7 +384,7 @@ def _warnings(study: Study, p: _SweptProblem, criteria: Criteria) -> tuple[str, 
         for h in (min(study.thicknesses), max(study.thicknesses))
         for line in warnings_of(replace(study.bare, coatings=((E, study.coating_nu, h),)))
     ]
-    stresses = residual_warnings({FLAT: study.residual[:1]}, p.temperature_change)
+    stresses = stress_warnings({FLAT: study.residual[:1]}, study.hardness, p.temperature_change)
     told = (line.replace("coating 1", "coating") for line in stresses)
     return (*dict.fromkeys(found), *criteria.warnings(), *told)
 

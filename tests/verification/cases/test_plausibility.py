@@ -60,6 +60,9 @@ SLIPS = [
     (STUDY, {"strength": "2.5"}, "criteria.strength.sigma_xx_surface", "GPa"),
     (CASE, {"thickness": '"3 mm"'}, "thickness", "unit"),
     (STUDY, {"radius": "10"}, "radius", "mm"),
+    (CASE, {"more": ", hardness = 1.5"}, "substrate, hardness = 1.5 Pa", 'give "1.5 GPa"'),
+    (CASE, {"more": ", yield_strength = 400"}, "substrate, yield_strength = 400 Pa", 'give "400 MPa"'),
+    (STUDY, {"more": ", hardness = 8"}, "substrate, hardness = 8 Pa", 'give "8 GPa"'),
 ]
 
 

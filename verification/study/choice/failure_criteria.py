@@ -22,9 +22,9 @@ import numpy as np
 from pydantic import Discriminator, Field, Tag, model_validator
 from scipy.special import ndtri
 
-from verification.cases.plausibility import Limits
+from verification.cases.plausibility import Limits, small_limits
 from verification.cases.toml_file import Strict
-from verification.cases.unit_numbers import InSI, Pascals
+from verification.cases.unit_numbers import Pascals
 from verification.problem.array_types import Array
 from verification.study.largest_stresses import Stress
 from verification.study.sweep_values import Between
@@ -148,7 +148,7 @@ class Criteria(Strict):
 
     def warnings(self) -> tuple[str, ...]:
         """A line for each implausible strength."""
-        found = []
+        found = {}
         for name, given in (self.strength or {}).items():
             if isinstance(given, Uniform):
                 key, value = ".from", given.start
@@ -156,11 +156,8 @@ class Criteria(Strict):
                 key, value = ".mean", given.mean
             else:
                 key, value = "", given
-            if value < 1e6:
-                unit = "GPa" if value < 100 else "MPa"
-                slip = "check its unit" if isinstance(value, InSI) else f"{value:g} looks like {unit}"
-                found.append(f"criteria.strength.{name}{key} = {value:g} Pa is below 1 MPa; {slip}")
-        return tuple(found)
+            found[f"criteria.strength.{name}{key}"] = value
+        return tuple(small_limits(found))
 
     @property
     def limited(self) -> bool:
