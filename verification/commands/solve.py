@@ -383,7 +383,6 @@ def _print(
     print_out(
         f"[bold]{escape(case.title)}[/]",
         escape(stack(case)),
-        *(escape(line) for line in paragraph(f"source: {case.source}") if case.source != NO_SOURCE),
         "",
         *(escape(line) for text in said for line in paragraph(text)),
         "",
@@ -403,7 +402,7 @@ def _print(
 
 
 def _print_model(case: Case, beyond: ModelError, hint: str, *, checked: bool) -> None:
-    """Prints what the answer is good for: error of the model, range of the verification."""
+    """Prints what the answer is good for: error of the model, range of the verification; then its source."""
     given = load_toml(case.text.encode())[1]
     if beyond.parts:
         head = "the model itself is good to"
@@ -421,3 +420,5 @@ def _print_model(case: Case, beyond: ModelError, hint: str, *, checked: bool) ->
         print_out(
             "with residual stress; the shear of an interface near a free edge of its coating is not covered"
         )
+    if case.source != NO_SOURCE:
+        print_out(*map(escape, paragraph(f"source: {case.source}")))
