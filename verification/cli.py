@@ -177,6 +177,7 @@ def main() -> None:
     except KeyboardInterrupt:
         sys.stderr.write("\ncoatcheck: stopped; finished cases are kept, go on with --resume\n")
         code = STOPPED
+    gc.enable()
     sys.exit(code)
 
 

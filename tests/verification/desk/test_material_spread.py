@@ -101,6 +101,7 @@ def test_the_command_shows_the_range_and_writes_every_number(tmp_path):
     assert float(rows[0]["highest"]) == pytest.approx(content["spread"]["ends"]["peak_pressure"][1])
     plain = coatcheck("solve", *options, cwd=tmp_path)
     assert "100 GPa to 200 GPa: see what follows with --spread" in " ".join(plain.stdout.split())
+    assert plain.stdout.index("the model itself") < plain.stdout.index("source: typical values: 100Cr6")
 
 
 @pytest.mark.parametrize(

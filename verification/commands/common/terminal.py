@@ -42,7 +42,7 @@ def with_exit_code(command: Callable[P, int]) -> Callable[P, int]:
         from verification.cases.toml_file import CaseError
         from verification.running.checked_files import StoreError
 
-        gc.enable()  # as before ``cli.main``
+        gc.enable()  # which ``cli.main`` disables while it loads a command
         try:
             return command(*args, **options)
         except (CommandError, CaseError, StoreError, OSError) as error:
