@@ -19,6 +19,7 @@ from verification.cases.toml_file import CaseError
 from verification.commands import solve
 from verification.credibility.model_error import ModelError
 from verification.desk import contact_answer, layer_limits
+from verification.judging.invariants import influence_error
 from verification.problem.coated_contact import CoatedContact
 from verification.running.case_result import to_json
 from verification.running.contact_run import run
@@ -148,6 +149,7 @@ def inner(annotation):
         yield from inner(part)
 
 
+QUADRATURE = cache(influence_error.surface_coefficient)  # of the same layers for most keys
 KNOWN = set(keys_of(case_file._CaseFile))
 
 
@@ -199,6 +201,7 @@ def work_of(text, command, capsys, monkeypatch):
         return answer
 
     if command == "run":
+        monkeypatch.setattr(influence_error, "surface_coefficient", QUADRATURE)
         found = to_json(run(case, {name: solved(name) for name in ("semianalytic", "fem_reference")}))
         for result in found["sources"]:
             result["seconds"] = 0.0
