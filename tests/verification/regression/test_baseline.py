@@ -132,10 +132,8 @@ def test_an_update_keeps_every_reason_with_what_changed(tmp_path):
 def test_the_command_refuses_in_one_sentence_and_writes_nothing(tmp_path):
     partial = [result_of(contact(), name="01_uncoated_steel", points=9)]
     run_directory(tmp_path / "partial", partial)
-    bad = [
-        result_of(contact(), name=name, points=9, failures={"hertz": "no"} if name == "05_ratio_4" else {})
-        for name in default_cases()
-    ]
+    failed = result_of(contact(), name="05_ratio_4", points=9, failures={"hertz": "no"})
+    bad = [failed if name == "05_ratio_4" else replace(partial[0], name=name) for name in default_cases()]
     run_directory(tmp_path / "bad", bad)
     before = sorted(tmp_path.rglob("*"))
     for words, said in (
@@ -153,7 +151,8 @@ def test_the_command_refuses_in_one_sentence_and_writes_nothing(tmp_path):
 
 
 def test_the_command_updates_from_a_whole_run_and_keeps_the_reason(tmp_path):
-    results = [result_of(contact(), name=name, points=9) for name in default_cases()]
+    found = result_of(contact(), points=9)
+    results = [replace(found, name=name) for name in default_cases()]
     run_directory(tmp_path / "reports", results)
     done = coatcheck("baseline", "update", "--why", "the [bold]first[/]", "-b", "base", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
