@@ -14,7 +14,7 @@ Newton's method: the pressure is linear in its coefficients, and moving the edge
 by  -dp/ds s^(n + 1) cos(n tau) c_n.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -49,9 +49,9 @@ class Closed:
     @cached_property
     def nodal_loads(self) -> np.ndarray:
         """Products of the pressure with the shape functions, (harmonics, nodes)."""
-        at, forces = self._forces
         one = self.compliances[0]
-        return one.nodal_loads(at.r, at.theta, forces.reshape(1, *at.theta.shape), one.last)[..., 0]
+        parts = [one.on_arcs(at.theta, forces[None], one.last) for at, forces in self._forces]
+        return one.nodal_loads(_radii(at for at, _ in self._forces), np.concatenate(parts))[..., 0]
 
     def of_degree(self, degree: int, height: Height, load: float, last: int) -> "Closed":
         """The contact by a pressure of another degree; arguments as of ``closed``."""
@@ -68,9 +68,9 @@ class Closed:
 
     def residual(self, height: Height) -> float:
         """Root mean square of the gap left inside, weighted with the pressure, over the approach."""
-        at, forces = self._forces
-        gap = self._gap(height, at.r, at.theta).ravel()
-        return float(np.sqrt((np.abs(forces) * gap**2).sum() / np.abs(forces).sum()) / self.approach)
+        gaps = [self._gap(height, at.r, at.theta).ravel() for at, _ in self._forces]
+        gap, weight = np.concatenate(gaps), np.abs(np.concatenate([p.ravel() for _, p in self._forces]))
+        return float(np.sqrt((weight * gap**2).sum() / weight.sum()) / self.approach)
 
     @property
     def errors(self) -> np.ndarray:
@@ -124,13 +124,19 @@ class Closed:
     @cached_property
     def _deflections(self) -> np.ndarray:
         """Amplitudes of u_z of all bodies, (nodes, harmonics)."""
-        return sum((one.matrices @ self.nodal_loads[..., None])[..., 0].T for one in self.compliances)
+        return np.asarray(sum(one.deflections(self.nodal_loads) for one in self.compliances))
 
     @cached_property
-    def _forces(self) -> tuple[Quadrature, np.ndarray]:
+    def _forces(self) -> list[tuple[Quadrature, np.ndarray]]:
+        """Points of quadrature and the pressure there times their weights, (arcs, points)."""
         one = self.compliances[0]
-        at = self.pressure.quadrature(one.vertices, one.last)
-        return at, at.weights * self.pressure(at.x, at.y)
+        batches = self.pressure.quadrature(one.vertices, one.last, one.fold)
+        return [(at, at.weights * self.pressure(at.x, at.y)) for at in batches]
+
+
+def _radii(batches: Iterable[Quadrature]) -> np.ndarray:
+    """Radius of each arc."""
+    return np.concatenate([at.r for at in batches])
 
 
 def closed(
@@ -146,25 +152,26 @@ def closed(
     last : harmonic at which the compliance is cut off, since the conditions are smooth
     """
     one = compliances[0]
-    matrices = sum(body.matrices[: last // body.fold + 1] for body in compliances)
+    matrices = sum(body.matrices(last) for body in compliances)
     delta, size = 0.0, np.inf
     for step in range(1, chosen.MOST_STEPS + 1):
         steps = step
-        at = pressure.quadrature(one.vertices, last)
-        root, most = np.sqrt(1 - at.s**2), pressure.degree + chosen.MORE
-        tests = pressure.polynomials(at.s, at.tau, most)
-        trial = tests[[pressure.terms(most).index(one) for one in pressure.terms(pressure.degree)]]
-        slope = _slope(pressure, at, trial)
-        moved = [-slope * at.s ** _power(n) * np.cos(n * at.tau) for n in pressure.waves]
-        n, k = len(trial), len(trial) + len(moved)
-        forces = np.concatenate([trial * root, moved, tests * root**chosen.WEIGHT])
-        forces *= at.weights
+        batches, most = pressure.quadrature(one.vertices, last, one.fold), pressure.degree + chosen.MORE
+        trials = [pressure.terms(most).index(one) for one in pressure.terms(pressure.degree)]
+        k = len(trials) + len(pressure.waves)
+        norm, total, raised, on_arcs = *np.zeros((3, 1)), []
+        for at in batches:
+            tests, forces = _forces(pressure, at, trials, most)
+            flat = forces.reshape(len(forces), -1)
+            norm = norm + flat[k:] @ tests.reshape(len(tests), -1).T
+            total = total + flat.sum(axis=1)
+            raised = raised + flat[k:] @ height(at.x, at.y).ravel()
+            on_arcs.append(one.on_arcs(at.theta, forces, last))
         # orthonormal with the weight root^5: the squares of the products then add up to the gap's norm
-        orthonormal = np.linalg.inv(np.linalg.cholesky(forces[k:] @ tests.T))
-        L = one.nodal_loads(at.r, at.theta, forces.reshape(-1, *at.theta.shape), last)
-        total, raised = forces.sum(axis=1), forces[k:] @ height(at.x, at.y)
+        orthonormal = np.linalg.inv(np.linalg.cholesky(norm))
+        L, n = one.nodal_loads(_radii(batches), np.concatenate(on_arcs)), len(trials)
         work = np.einsum("mit,mic->tc", L[:, :, k:], matrices @ L[:, :, :k], optimize=True)
-        A = np.zeros((len(tests) + 1, k + 1))
+        A = np.zeros((len(norm) + 1, k + 1))
         A[:-1, :k], A[:-1, k], A[-1, :k] = orthonormal @ work, -orthonormal @ total[k:], total[:k]
         b = np.append(-orthonormal @ raised, load)
         # the load counts so much that it is kept
@@ -217,17 +224,19 @@ def as_rich_as_helps(
     return tried[best], tried[best - 1]
 
 
-def _power(n: int) -> int:
-    """Power of s in ds/dc_n: of a shift of the centre (1), of the half axes (0, 2), of the contour."""
-    return n + 1 if n > 2 else (n + 1) % 2
+def _forces(
+    pressure: StarPressure, at: Quadrature, trials: list[int], most: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Conditions to the degree ``most`` at the points; and what is integrated, times the weights of that.
 
-
-def _slope(pressure: StarPressure, at: Quadrature, trial: np.ndarray) -> np.ndarray:
-    """dp/ds at the points, that of the polynomials ``trial`` by differences."""
-    h = 1e-5
-    root = np.sqrt(1 - at.s**2)
-    below, above = (
-        np.tensordot(pressure.coefficients, pressure.polynomials(at.s + e, at.tau, pressure.degree), 1)
-        for e in (-h, h)
-    )
-    return np.asarray(-at.s / root * (pressure.coefficients @ trial) + root * (above - below) / (2 * h))
+    This is: terms of the pressure, the ``trials`` among those to ``most``, its changes as the edge moves, and
+    conditions with their own weight.
+    """
+    tests, root = pressure.polynomials(at.s, at.tau, most), np.sqrt(1 - at.s**2)
+    trial = tests[trials]
+    values, slopes = np.tensordot([pressure.coefficients, pressure.radial_slope], trial, 1)
+    steepness = at.s**2 / root * values - root * slopes  # -s dp/ds
+    # times ds/dc_n: of a shift of the centre (1), of the half axes (0, 2), of the contour
+    powers = [n if n > 2 else (n + 1) % 2 - 1 for n in pressure.waves]
+    moved = [steepness * at.s**q * np.cos(n * at.tau) for q, n in zip(powers, pressure.waves, strict=True)]
+    return tests, np.concatenate([trial * root, moved, tests * root**chosen.WEIGHT]) * at.weights

@@ -149,8 +149,8 @@ class ShapedContact(PressedSolid):
         away = np.abs(np.hypot(x, y)[..., None] - np.abs(edges)).min(axis=-1)
         size = surface_size(fields.surface, away / length)
         h = length * np.maximum(chosen.RESOLVED * size, fields.least / 3)
-        k = np.maximum(h, np.hypot(x, y) * np.pi / (2 * fields.compliance.last))
-        nu = fields.compliance.solid.materials[0][1]
+        k = np.maximum(h, np.hypot(x, y) * np.pi / (2 * fields.last))
+        nu = fields.solid.materials[0][1]
         on_series = (y == 0) & (away < length * chosen.WITHIN * fields.least)
         missed = []
         for i, j in ((h, 0 * h), (0 * k, k)):
@@ -266,17 +266,11 @@ def solve_shape(
         bodies = solids(reach)
         stacks = tuple(one.thicknesses for one in bodies)
         inner = max(0.0, start.reach[0] - (grid.margin - 1))
-        compliances = tuple(
-            harmonic_compliance(
-                one,
-                discretised(one, grid.size, grid.surface, order, growth=0.7, edges=apart, stacks=stacks),
-                grid.harmonics,
-                shape.turns,
-                grid.density,
-                inner,
-            )
-            for one in bodies
-        )
+        made = {}
+        for one in dict.fromkeys(bodies):  # two bodies of the same layers are one
+            d = discretised(one, grid.size, grid.surface, order, growth=0.7, edges=apart, stacks=stacks)
+            made[one] = harmonic_compliance(one, d, grid.harmonics, shape.turns, grid.density, inner)
+        compliances = tuple(made[one] for one in bodies)
         return closed(compliances, start, *arguments(reach, grid), enough)
 
     def arguments(reach: float, grid: ShapedGrid) -> tuple[Height, float, int]:
