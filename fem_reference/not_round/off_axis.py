@@ -6,7 +6,7 @@ problems (``harmonic_compliance``). What the tractions themselves add to the str
 split into harmonics.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -85,6 +85,12 @@ class OffAxisFields:
         fields = tuple(HarmonicField(d, u, materials, m, np.zeros_like, 0.0, False) for m, u in found.items())
         resultant = float(loads[0].sum())
         return cls(d, compliance.solid, compliance.last, fields, resultant, friction, pressure, surface)
+
+    @property
+    def turned(self) -> "OffAxisFields":
+        """Fields with the friction the other way, by half a turn about z, of a pressure even in x."""
+        of = (replace(one, fields=(-1) ** one.harmonic * one.fields) for one in self.fields)
+        return replace(self, fields=tuple(of), friction=-self.friction)
 
     @cached_property
     def edges(self) -> tuple[float, ...]:

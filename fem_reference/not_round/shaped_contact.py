@@ -6,6 +6,7 @@ degrees.
 """
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -264,7 +265,9 @@ def solve_shape(
         pairs = zip(radii, [0.0, *radii], strict=False) if grid is not rough_grid else ()
         apart = tuple(r for r, before in pairs if r - before > grid.surface / 10)
         bodies = solids(reach)
-        stacks = tuple(one.thicknesses for one in bodies)
+        # graded as if no interface were nearer than a triangle of the surface is wide
+        depths = (np.maximum(np.cumsum(one.thicknesses), grid.surface) for one in bodies)
+        stacks = tuple(tuple(np.diff(of, prepend=0.0).tolist()) for of in depths)
         inner = max(0.0, start.reach[0] - (grid.margin - 1))
         made = {}
         for one in dict.fromkeys(bodies):  # two bodies of the same layers are one
@@ -310,14 +313,13 @@ def solve_shape(
     found = both.found
     found.check(shape.scaled(reach), indenter[0])
     numbers, residual = _numbers(found), found.residual(shape.scaled(reach))
-    sliding = (friction, -friction)
-    fine = [_fields(found, k, sliding[k], surface) for k in range(len(layers))]
-    coarse: list[OffAxisFields | None] = [None] * len(layers)
+    fine = _fields(found, friction, surface)
+    coarse: Sequence[OffAxisFields | None] = [None] * len(layers)
     uncertainty, extents, estimate = None, None, None
     if estimate_uncertainty:
         companion, fewer = both.companion, lower.companion
         estimate = StarEstimate(found.pressure, companion.pressure, lower.found.pressure)
-        coarse = [_fields(fewer, k, sliding[k], r * surface) for k in range(len(layers))]
+        coarse = _fields(fewer, friction, r * surface)
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
         # in a change of the area parts of the edge may make up for each other
         change[0] = BY_CONDITIONS * found.moved(companion) * numbers[0]
@@ -371,8 +373,16 @@ def solve_shape(
     return sides[-1]
 
 
-def _fields(found: Closed, body: int, friction: float, surface: float) -> OffAxisFields:
-    return OffAxisFields.of(found.compliances[body], found.nodal_loads, friction, found.pressure, surface)
+def _fields(found: Closed, friction: float, surface: float) -> list[OffAxisFields]:
+    """Fields of each body; traction acts on the second in -x."""
+    made: list[OffAxisFields] = []
+    for one in found.compliances:
+        if made and one is found.compliances[0] and one.fold % 2 == 0:
+            made.append(made[0].turned)
+        else:
+            of = (-friction if made else friction), found.pressure, surface
+            made.append(OffAxisFields.of(one, found.nodal_loads, *of))
+    return made
 
 
 def _typical(solid: PressedSolid) -> float:

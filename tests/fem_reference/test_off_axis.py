@@ -90,3 +90,10 @@ def test_friction_is_that_of_a_prescribed_load():
     np.testing.assert_allclose(
         found.stress(x, 0.2 * A, z, None), expected.stress(x, 0.2 * A, z, None), rtol=0, atol=4e-4 * P0
     )
+
+
+def test_half_a_turn_slides_the_other_way():
+    x, y, z = A * np.array([[0.1, 0.4, -0.9], [0.3, -0.2, 0.5], [0.0, 0.4, 1.0]])
+    one, other = (under_ellipse((1.0, 0.6), friction=f) for f in (F, -F))
+    turned = PressedSolid(one._fine.turned, None, one._units)
+    np.testing.assert_allclose(turned.stress(x, y, z), other.stress(x, y, z), rtol=0, atol=1e-9 * P0)
