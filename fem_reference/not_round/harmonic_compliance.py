@@ -200,10 +200,7 @@ def _weights(solved: tuple[float, ...], m: int) -> np.ndarray:
 
 
 def _sums(loads: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Loads (3, nodes, columns) of which ``loads`` (harmonics, 3, nodes) are sums, and their shares in each.
-
-    As many as have a singular value above rounding.
-    """
+    """Loads (3, nodes, columns) of which ``loads`` (harmonics, 3, nodes) are sums, and their shares."""
     flat = loads.reshape(len(loads), -1)
     used = np.flatnonzero(flat.any(axis=0))
     U, size, V = np.linalg.svd(flat[:, used], full_matrices=False)
@@ -242,19 +239,15 @@ class Meridian:
         given = np.concatenate(fixed)
         return cls(solid, d, m, loaded, K, *(of[~np.isin(of, given)] for of in (order, normal)))
 
-    @property
-    def _work(self) -> float:
-        """Angular factor of the virtual work of harmonic loads."""
-        return 2 * np.pi if self.harmonic == 0 else np.pi
-
     def solve(self, loads: np.ndarray) -> np.ndarray:
         """Field vectors (n, columns) under ``loads`` (3, nodes, columns) normal, radial and angular."""
         m, N = self.harmonic, self.discretisation.N
-        normal, radial, angular = loads / self._work
+        normal, radial, angular = loads / (np.pi if m else 2 * np.pi)
         # virtual work R U + T V with U = S - V
         load = [radial, normal] if m == 0 else [radial, angular - radial, normal]
         at = np.concatenate([field * N + self.loaded for field in range(len(load))])
-        far = (self._far, _resultant(m, loads)) if m < 2 else None
+        resultant = (loads[1] - loads[2] if m else loads[0]).sum(axis=0)
+        far = (self._far, resultant) if m < 2 else None
         factor = ConstrainedFactor.of(self.skeleton.matrix, self.order, self.order[:0])
         whole = np.outer(*far) if far else np.zeros((len(load) * N, loads.shape[-1]))
         whole[factor.free] = factor.solve(at, np.concatenate(load), far)
@@ -267,7 +260,7 @@ class Meridian:
         row = factor.rows(self.skeleton.matrix.shape[0] - self.discretisation.N + self.loaded)
         S = np.zeros((row.size, row.size))
         free = np.flatnonzero(row >= 0)
-        S[np.ix_(free, free)] = factor.compliance / self._work
+        S[np.ix_(free, free)] = factor.compliance / (np.pi if self.harmonic else 2 * np.pi)
         if self.harmonic == 0:  # moved by what is given far away, the same for every load
             no_load = self.loaded[:0], np.zeros((0, 1))
             S[free] += factor.solve(*no_load, (self._far, np.ones(1)))[row[free]]
@@ -298,8 +291,3 @@ def _reached(d: Discretisation, m: float) -> np.ndarray:
     beside = np.zeros(d.N, dtype=bool)
     beside[numbers[:, near[numbers].any(axis=0)]] = True  # and in those next to it, lest one row be too stiff
     return np.asarray(beside[numbers].any(axis=0))
-
-
-def _resultant(m: float, loads: np.ndarray) -> np.ndarray:
-    """Normal (m = 0) or tangential (1) resultant (columns,) of ``loads`` as in ``Meridian.solve``."""
-    return np.asarray((loads[1] - loads[2] if m else loads[0]).sum(axis=0))

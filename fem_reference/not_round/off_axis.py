@@ -83,8 +83,8 @@ class OffAxisFields:
         d, materials = compliance.discretisation, compliance.solid.materials
         found = compliance.displacements(loads, friction)
         fields = tuple(HarmonicField(d, u, materials, m, np.zeros_like, 0.0, False) for m, u in found.items())
-        resultant = float(loads[0].sum())
-        return cls(d, compliance.solid, compliance.last, fields, resultant, friction, pressure, surface)
+        load = float(loads[0].sum())
+        return cls(d, compliance.solid, compliance.last, fields, load, friction, pressure, surface)
 
     @property
     def turned(self) -> "OffAxisFields":
@@ -92,14 +92,9 @@ class OffAxisFields:
         of = (replace(one, fields=(-1) ** one.harmonic * one.fields) for one in self.fields)
         return replace(self, fields=tuple(of), friction=-self.friction)
 
-    @cached_property
-    def edges(self) -> tuple[float, ...]:
-        """x on the axis y = 0 at which the pressure has a root."""
-        return self.pressure.edges
-
     @property
     def least(self) -> float:
-        """Size of the triangles at the ``edges``."""
+        """Size of the triangles at the edges."""
         return float(surface_size(self.surface, 0.0))
 
     def __call__(self, points: SolidPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -111,7 +106,7 @@ class OffAxisFields:
         u, s, late_u, late_s = self._summed(points)
         surface = at.z == 0
         x, along = at.r_given * points.cos, surface & (np.abs(points.sin) < 1e-9)
-        for k, edge in enumerate(self.edges):
+        for k, edge in enumerate(self.pressure.edges):
             near = np.flatnonzero(along & (np.abs(x - edge) < chosen.WITHIN * self.least))
             if near.size:
                 away = np.sign(edge) * (x[near] - edge) / self.least
@@ -162,7 +157,7 @@ class OffAxisFields:
         """
         found = []
         away = self.least * np.outer([-1, 1], np.geomspace(*chosen.BESIDE_EDGE, 24)).ravel()
-        for edge in self.edges:
+        for edge in self.pressure.edges:
             x, zero = edge + np.sign(edge) * away, np.zeros(away.size)
             located = self.discretisation.locator.points(np.abs(x), zero, zero.astype(int))
             _, s, _, late_s = self._summed(SolidPoints(located, np.sign(x), zero, x.shape))

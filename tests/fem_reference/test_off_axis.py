@@ -25,7 +25,7 @@ def under_ellipse(axes, *, friction=0.0, harmonics=8, size=0.3):
     """Fields below p0 sqrt(1 - x^2/a^2 - y^2/b^2), the half axes over A."""
     compliance = harmonic_compliance(SOLID, discretised(SOLID, size, size / 2, 4), harmonics, 1)
     pressure = StarPressure.of_ellipse(0.0, axes, 2 * np.pi * axes[0] * axes[1] / 3 * P0 / E, 1, 2)
-    found = Closed((compliance,), pressure, 1.0, 0, True, np.zeros((0, 0)))
+    found = Closed((compliance,), pressure, 1.0, 0, True, np.zeros((0, 0)), (abs, 0.0, 0))
     fields = OffAxisFields.of(compliance, found.nodal_loads, friction, pressure, size / 2)
     return PressedSolid(fields, None, Scales(length=A, pressure=E, modulus=E))
 
