@@ -14,7 +14,6 @@ Newton's method: the pressure is linear in its coefficients, and moving the edge
 by  -dp/ds s^(n + 1) cos(n tau) c_n.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -37,6 +36,7 @@ class Closed:
     """A pressure under which the gap vanishes, its approach, and the compliances of the bodies below it.
 
     covariance : of coefficients, change of the edge and approach, by what the conditions leave of the gap
+    asked : height of the indenter, load and last harmonic that corrects the pressure, as of ``closed``
     """
 
     compliances: tuple[HarmonicCompliance, ...]
@@ -45,38 +45,39 @@ class Closed:
     steps: int
     converged: bool
     covariance: np.ndarray
+    asked: tuple[Height, float, int]
 
     @cached_property
     def nodal_loads(self) -> np.ndarray:
         """Products of the pressure with the shape functions, (harmonics, nodes)."""
-        at, forces = self._forces
         one = self.compliances[0]
-        return one.nodal_loads(at.r, at.theta, forces.reshape(1, *at.theta.shape), one.last)[..., 0]
+        parts = [one.on_arcs(at.theta, forces[None], one.last) for at, forces in self._forces]
+        r = np.concatenate([at.r for at, _ in self._forces])
+        return one.nodal_loads(r, np.concatenate(parts))[..., 0]
 
-    def of_degree(self, degree: int, height: Height, load: float, last: int) -> "Closed":
-        """The contact by a pressure of another degree; arguments as of ``closed``."""
-        return closed(self.compliances, self.pressure.of_degree(degree), height, load, last)
+    def of_degree(self, degree: int) -> "Closed":
+        """The contact by a pressure of another degree."""
+        return closed(self.compliances, self.pressure.of_degree(degree), *self.asked)
 
     def moved(self, other: "Closed") -> float:
-        """Change of the contact radius to that of the ``other``, over it, if no part of the edge made up for
-        another."""
+        """Relative change of the contact radius to the ``other``, if no part of the edge offset another."""
         p = self.pressure
         x, y = np.array(p.contour_points)
         away = np.hypot(*(np.array(other.pressure.contour_points) - (x, y)))
         area = np.trapezoid(away, np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))]))
         return float(area * (2 if p.centre else 1) / p.area)
 
-    def residual(self, height: Height) -> float:
+    @property
+    def residual(self) -> float:
         """Root mean square of the gap left inside, weighted with the pressure, over the approach."""
-        at, forces = self._forces
-        gap = self._gap(height, at.r, at.theta).ravel()
-        return float(np.sqrt((np.abs(forces) * gap**2).sum() / np.abs(forces).sum()) / self.approach)
+        gaps = [self._gap(at.r, at.theta).ravel() for at, _ in self._forces]
+        gap, weight = np.concatenate(gaps), np.abs(np.concatenate([p.ravel() for _, p in self._forces]))
+        return float(np.sqrt((weight * gap**2).sum() / weight.sum()) / self.approach)
 
     @property
     def errors(self) -> np.ndarray:
         """Relative standard errors of contact radius, approach, pressure at the centre and extents."""
-        p = self.pressure
-        zero = np.zeros(1)
+        p, zero = self.pressure, np.zeros(1)
         n, k = len(p.coefficients), len(p.coefficients) + len(p.waves)
         rows = np.zeros((5, k + 1))
         rows[0, n], rows[1, k] = 1.0, 1 / self.approach
@@ -92,7 +93,7 @@ class Closed:
                 f"the contour under the {name} is not at rest after {self.steps} steps{ADVICE}"
             )
 
-    def check(self, height: Height, name: str) -> None:
+    def check(self, name: str) -> None:
         """Raises ElementsNotConverged unless the contour rests, with p >= 0 inside and a gap >= 0 outside."""
         self.check_rest(name)
         p = self.pressure
@@ -109,28 +110,29 @@ class Closed:
         x, y = (v.ravel() for v in p.points(*np.meshgrid([1.02, 1.1, 1.3, 1.7], np.linspace(0, np.pi, 37))))
         r, theta = np.hypot(x, y), np.arctan2(y, x)
         near = (r > nodes[0]) & (r < nodes[-1]) & (x * (p.centre > 0) >= 0)
-        gap = self._gap(height, r[near], theta[near, None])
+        gap = self._gap(r[near], theta[near, None])
         if gap.size and gap.min() < -chosen.ALLOWED * self.approach:
             raise ElementsNotConverged(
                 f"the {name} penetrates by {-gap.min() / self.approach:.2g} of the approach outside the "
                 f"contact{ADVICE}"
             )
 
-    def _gap(self, height: Height, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
+    def _gap(self, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
         """Gap on arcs of radius r (arcs,) at theta (arcs, points)."""
-        u = self.compliances[0].deflection(self._deflections, r, theta)
-        return np.asarray(u + height(r[:, None] * np.cos(theta), r[:, None] * np.sin(theta)) - self.approach)
+        u = self.compliances[0].deflection(self._deflections, r, theta) - self.approach
+        return np.asarray(u + self.asked[0](r[:, None] * np.cos(theta), r[:, None] * np.sin(theta)))
 
     @cached_property
     def _deflections(self) -> np.ndarray:
         """Amplitudes of u_z of all bodies, (nodes, harmonics)."""
-        return sum((one.matrices @ self.nodal_loads[..., None])[..., 0].T for one in self.compliances)
+        return np.asarray(sum(one.deflections(self.nodal_loads) for one in self.compliances))
 
     @cached_property
-    def _forces(self) -> tuple[Quadrature, np.ndarray]:
+    def _forces(self) -> list[tuple[Quadrature, np.ndarray]]:
+        """Points of quadrature and the pressure there times their weights, (arcs, points)."""
         one = self.compliances[0]
-        at = self.pressure.quadrature(one.vertices, one.last)
-        return at, at.weights * self.pressure(at.x, at.y)
+        batches = self.pressure.quadrature(one.vertices, one.last, one.fold)
+        return [(at, at.weights * self.pressure(at.x, at.y)) for at in batches]
 
 
 def closed(
@@ -146,25 +148,25 @@ def closed(
     last : harmonic at which the compliance is cut off, since the conditions are smooth
     """
     one = compliances[0]
-    matrices = sum(body.matrices[: last // body.fold + 1] for body in compliances)
+    matrices = sum(body.matrices(last) for body in compliances)
     delta, size = 0.0, np.inf
     for step in range(1, chosen.MOST_STEPS + 1):
         steps = step
-        at = pressure.quadrature(one.vertices, last)
-        root, most = np.sqrt(1 - at.s**2), pressure.degree + chosen.MORE
-        tests = pressure.polynomials(at.s, at.tau, most)
-        trial = tests[[pressure.terms(most).index(one) for one in pressure.terms(pressure.degree)]]
-        slope = _slope(pressure, at, trial)
-        moved = [-slope * at.s ** _power(n) * np.cos(n * at.tau) for n in pressure.waves]
-        n, k = len(trial), len(trial) + len(moved)
-        forces = np.concatenate([trial * root, moved, tests * root**chosen.WEIGHT])
-        forces *= at.weights
+        batches, n = pressure.quadrature(one.vertices, last, one.fold), len(pressure.coefficients)
+        k = n + len(pressure.waves)
+        norm, total, raised, on_arcs = *np.zeros((3, 1)), []
+        for at in batches:
+            tests, forces = _forces(pressure, at)
+            flat = forces.reshape(len(forces), -1)
+            norm = norm + flat[k:] @ tests.reshape(len(tests), -1).T
+            total = total + flat.sum(axis=1)
+            raised = raised + flat[k:] @ height(at.x, at.y).ravel()
+            on_arcs.append(one.on_arcs(at.theta, forces, last))
         # orthonormal with the weight root^5: the squares of the products then add up to the gap's norm
-        orthonormal = np.linalg.inv(np.linalg.cholesky(forces[k:] @ tests.T))
-        L = one.nodal_loads(at.r, at.theta, forces.reshape(-1, *at.theta.shape), last)
-        total, raised = forces.sum(axis=1), forces[k:] @ height(at.x, at.y)
+        orthonormal = np.linalg.inv(np.linalg.cholesky(norm))
+        L = one.nodal_loads(np.concatenate([at.r for at in batches]), np.concatenate(on_arcs))
         work = np.einsum("mit,mic->tc", L[:, :, k:], matrices @ L[:, :, :k], optimize=True)
-        A = np.zeros((len(tests) + 1, k + 1))
+        A = np.zeros((len(norm) + 1, k + 1))
         A[:-1, :k], A[:-1, k], A[-1, :k] = orthonormal @ work, -orthonormal @ total[k:], total[:k]
         b = np.append(-orthonormal @ raised, load)
         # the load counts so much that it is kept
@@ -175,13 +177,12 @@ def closed(
         covariance = np.linalg.pinv(A.T @ A) * float(np.sum((A @ x - b) ** 2)) / (len(A) - len(x))
         size, delta = float(np.abs(x[n:k]).max()), float(x[k])
         share = min(1.0, chosen.LARGEST_MOVE / size)
-        old = pressure.coefficients
-        pressure = pressure.moved(share * x[n:k], old + share * (x[:n] - old))
-        if size < enough:
+        pressure = pressure.moved(share * x[n:k], share * x[:n] + (1 - share) * pressure.coefficients)
+        leaves_mesh = pressure.reach[1] > one.vertices[-1] or pressure.reach[0] < one.vertices[0]
+        if size < enough or leaves_mesh:
             break
-        if pressure.reach[1] > one.vertices[-1] or pressure.reach[0] < one.vertices[0]:
-            break  # it leaves the mesh
-    return Closed(compliances, pressure, delta, steps, size < chosen.EDGE_CLOSE, covariance)
+    rests = size < chosen.EDGE_CLOSE
+    return Closed(compliances, pressure, delta, steps, rests, covariance, (height, load, last))
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,19 +197,22 @@ class OnTwoMeshes:
         by_degree = chosen.OF_FIELDS * self.found.moved(lower.found)
         return BY_CONDITIONS * self.found.moved(self.companion) + by_degree
 
+    def by(self, more: int) -> "OnTwoMeshes":
+        """The contact by a degree that is ``more``."""
+        degree = self.found.pressure.degree + more
+        return OnTwoMeshes(self.found.of_degree(degree), self.companion.of_degree(degree))
 
-def as_rich_as_helps(
-    poorest: OnTwoMeshes, of_degree: Callable[[int], OnTwoMeshes], most: int
-) -> tuple[OnTwoMeshes, OnTwoMeshes]:
+
+def as_rich_as_helps(poorest: OnTwoMeshes, most: int) -> tuple[OnTwoMeshes, OnTwoMeshes]:
     """The contact by that degree of the pressure whose edge is least uncertain, and by the next lower one.
 
     What elements miss at the edge cannot be closed, and a pressure of too many terms follows it: degrees from
     that of the ``poorest`` to ``most`` are tried until ``WORSE`` in turn are worse than the best.
     """
-    tried = [of_degree(poorest.found.pressure.degree - 2), poorest]
+    tried = [poorest.by(-2), poorest]
     best, uncertain = 1, tried[1].uncertain(tried[0])
     while tried[-1].found.pressure.degree + 2 <= most and len(tried) - 1 - best < chosen.WORSE:
-        tried.append(of_degree(tried[-1].found.pressure.degree + 2))
+        tried.append(tried[-1].by(2))
         if not (tried[-1].found.converged and tried[-1].companion.converged):
             break
         more = tried[-1].uncertain(tried[-2])
@@ -217,17 +221,17 @@ def as_rich_as_helps(
     return tried[best], tried[best - 1]
 
 
-def _power(n: int) -> int:
-    """Power of s in ds/dc_n: of a shift of the centre (1), of the half axes (0, 2), of the contour."""
-    return n + 1 if n > 2 else (n + 1) % 2
+def _forces(pressure: StarPressure, at: Quadrature) -> tuple[np.ndarray, np.ndarray]:
+    """Conditions at the points; and what is integrated, times the weights of that.
 
-
-def _slope(pressure: StarPressure, at: Quadrature, trial: np.ndarray) -> np.ndarray:
-    """dp/ds at the points, that of the polynomials ``trial`` by differences."""
-    h = 1e-5
-    root = np.sqrt(1 - at.s**2)
-    below, above = (
-        np.tensordot(pressure.coefficients, pressure.polynomials(at.s + e, at.tau, pressure.degree), 1)
-        for e in (-h, h)
-    )
-    return np.asarray(-at.s / root * (pressure.coefficients @ trial) + root * (above - below) / (2 * h))
+    This is: terms of the pressure, its changes as the edge moves, and conditions with their own weight.
+    """
+    most, root = pressure.degree + chosen.MORE, np.sqrt(1 - at.s**2)
+    tests = pressure.polynomials(at.s, at.tau, most)
+    trial = tests[[pressure.terms(most).index(one) for one in pressure.terms(pressure.degree)]]
+    values, slopes = np.tensordot([pressure.coefficients, pressure.radial_slope], trial, 1)
+    steepness = at.s**2 / root * values - root * slopes  # -s dp/ds
+    # times ds/dc_n: of a shift of the centre (1), of the half axes (0, 2), of the contour
+    powers = [n if n > 2 else (n + 1) % 2 - 1 for n in pressure.waves]
+    moved = [steepness * at.s**q * np.cos(n * at.tau) for q, n in zip(powers, pressure.waves, strict=True)]
+    return tests, np.concatenate([trial * root, moved, tests * root**chosen.WEIGHT]) * at.weights

@@ -18,10 +18,8 @@ Friction along x, q = f p, has the products with the shape functions of u_r and 
     R_m = f (L_(m-1) + L_(m+1))/2,      T_m = -f (L_(m-1) - L_(m+1))/2,      L_-1 = L_1.
 """
 
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -37,7 +35,8 @@ from fem_reference.scaling import LayeredSolid
 class HarmonicCompliance:
     """Response to the pressures that act on the unknowns ``loaded`` of one field on the surface of one mesh.
 
-    solved : m of each of the ``meridians``, factorised.  last, fold : harmonics 0, fold, 2 fold, .., last
+    solved : m of each of the ``meridians``.   compliances : S of each, (solutions, nodes, nodes)
+    last, fold : harmonics 0, fold, 2 fold, .., last
     """
 
     solid: LayeredSolid
@@ -45,6 +44,7 @@ class HarmonicCompliance:
     loaded: np.ndarray
     solved: tuple[float, ...]
     meridians: tuple["Meridian", ...]
+    compliances: np.ndarray
     last: int
     fold: int
 
@@ -64,32 +64,35 @@ class HarmonicCompliance:
         return np.arange(0, self.last + 1, self.fold)
 
     @cached_property
-    def matrices(self) -> np.ndarray:
-        """S_m, (harmonics, nodes, nodes)."""
-        found = np.array([one.compliance for one in self.meridians])
-        weights = np.array([_weights(self.solved, int(m)) for m in self.harmonics])
-        return np.asarray(np.tensordot(weights, found, 1))
+    def _shares(self) -> np.ndarray:
+        """Weights of the solutions in each harmonic, (harmonics, solutions)."""
+        return np.array([_weights(self.solved, int(m)) for m in self.harmonics])
 
-    def nodal_loads(self, r: np.ndarray, theta: np.ndarray, forces: np.ndarray, last: int) -> np.ndarray:
-        """L of ``forces`` (columns, arcs, points), (harmonics to ``last``, nodes, columns).
+    def matrices(self, last: int) -> np.ndarray:
+        """S_m of the harmonics to ``last``, (harmonics, nodes, nodes)."""
+        return np.tensordot(self._shares[: last // self.fold + 1], self.compliances, 1)
 
-        r, theta : radius of each arc (arcs,) and angles on it (arcs, points)
-        """
-        on_arcs = np.concatenate(
-            [waves @ forces[:, some].transpose(1, 2, 0) for some, waves in self._waves(theta, last)]
+    def deflections(self, loads: np.ndarray) -> np.ndarray:
+        """Amplitudes of u_z at the nodes (nodes, harmonics) under ``loads`` (harmonics, nodes)."""
+        return sum(
+            S @ (share[:, None] * loads).T for S, share in zip(self.compliances, self._shares.T, strict=True)
         )
+
+    def on_arcs(self, theta: np.ndarray, forces: np.ndarray, last: int) -> np.ndarray:
+        """Products of ``forces`` (columns, arcs, points) with the waves, (arcs, harmonics, columns).
+
+        theta : angles (arcs, points).   last : the last harmonic
+        """
+        return self._waves(theta, last) @ forces.transpose(1, 2, 0)
+
+    def nodal_loads(self, r: np.ndarray, on_arcs: np.ndarray) -> np.ndarray:
+        """L (harmonics, nodes, columns) of forces ``on_arcs`` of radii r (arcs,)."""
         L = self._shapes(r).T @ on_arcs.reshape(r.size, -1)
         return np.asarray(L.reshape(-1, *on_arcs.shape[1:]).swapaxes(0, 1))
 
-    def products(self, r: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """sum_k values_mk phi_i(r_k), (harmonics, nodes), of values (harmonics, radii)."""
-        return (self._shapes(r).T @ values.T).T
-
     def deflection(self, at_nodes: np.ndarray, r: np.ndarray, theta: np.ndarray) -> np.ndarray:
-        """u_z on arcs as in ``nodal_loads``, (arcs, points), of its amplitudes (nodes, harmonics)."""
-        of_arcs = (self._shapes(r) @ at_nodes)[:, None]
-        found = [of_arcs[some] @ waves for some, waves in self._waves(theta, self.last)]
-        return np.concatenate(found)[:, 0] if found else np.zeros(theta.shape)
+        """u_z on arcs of radius r (arcs,) at theta (arcs, points), of its amplitudes (nodes, harmonics)."""
+        return np.asarray(((self._shapes(r) @ at_nodes)[:, None] @ self._waves(theta, self.last))[:, 0])
 
     def displacements(self, loads: np.ndarray, friction: float = 0.0) -> dict[int, np.ndarray]:
         """Field vector of every harmonic under a pressure and ``friction`` times it along x.
@@ -104,27 +107,35 @@ class HarmonicCompliance:
             tractions = np.array([L[m], below + above, above - below])
             if tractions.any():
                 acting[m] = tractions
-        known = dict(zip(self.solved, self.meridians, strict=True))
-        solved = (*(m for m in acting if m < chosen.DIRECT), *(m for m in self.solved if m >= chosen.DIRECT))
+        known, d = dict(zip(self.solved, self.meridians, strict=True)), self.discretisation
+        found: dict[int, np.ndarray] = {}
+        for m in (m for m in acting if m < chosen.DIRECT):
+            one = known.get(m) or Meridian.of(self.solid, d, m, self.loaded)
+            found[m] = one.solve(acting[m][..., None])[:, 0]
+        high = [m for m in acting if m >= chosen.DIRECT]
+        if not high:
+            return found
+        total = np.zeros((len(high), 3 * d.N))
+        fewer, sums = _sums(np.array([acting[m] for m in high]))
+        shares = np.array([_weights(self.solved, m) for m in high])
+        for one, share in zip(self.meridians, shares.T, strict=True):
+            if share.any():
+                u, mixed = one.solve(fewer), share[:, None] * sums
+                rows = np.flatnonzero(u.any(axis=1))
+                for begin in range(0, rows.size, chosen.TRIANGLES_AT_ONCE):
+                    some = rows[begin : begin + chosen.TRIANGLES_AT_ONCE]
+                    total[:, some] += mixed @ u[some].T
+        return found | dict(zip(high, total, strict=True))
 
-        def respond(k: int, columns: np.ndarray) -> np.ndarray:
-            one = known.get(solved[k]) or Meridian.of(self.solid, self.discretisation, solved[k], self.loaded)
-            return one.extended(one.solve(columns), columns)
-
-        return _superposed(solved, acting, respond)
-
-    def _waves(self, theta: np.ndarray, last: int) -> Iterator[tuple[slice, np.ndarray]]:
-        """cos(m theta) of the harmonics to ``last`` on some arcs after others, (arcs, harmonics, points)."""
-        count = last // self.fold + 1
-        for begin in range(0, len(theta), chosen.COLUMNS_AT_ONCE):
-            some = slice(begin, begin + chosen.COLUMNS_AT_ONCE)
-            turn = np.exp(1j * self.fold * theta[some])
-            waves = np.empty((len(turn), count, theta.shape[1]))
-            power = np.ones_like(turn)
-            for k in range(count):
-                waves[:, k] = power.real
-                power *= turn
-            yield some, waves
+    def _waves(self, theta: np.ndarray, last: int) -> np.ndarray:
+        """cos(m theta) of the harmonics to ``last``, (arcs, harmonics, points)."""
+        turn = np.exp(1j * self.fold * theta)
+        waves = np.empty((len(turn), last // self.fold + 1, theta.shape[1]))
+        power = np.ones_like(turn)
+        for k in range(waves.shape[1]):
+            waves[:, k] = power.real
+            power *= turn
+        return waves
 
     def _shapes(self, r: np.ndarray) -> sp.csr_matrix:
         """phi_i(r), (points, nodes); r between the first node and the last."""
@@ -162,7 +173,8 @@ def harmonic_compliance(
     first = np.searchsorted(d.contact_vertices, inner, side="right") - 1
     loaded = d.contact[d.order * first :]
     meridians = tuple(Meridian.of(solid, d, m, loaded) for m in solved)
-    return HarmonicCompliance(solid, d, loaded, solved, meridians, last, fold)
+    compliances = np.array([one.compliance for one in meridians])
+    return HarmonicCompliance(solid, d, loaded, solved, meridians, compliances, last, fold)
 
 
 def _high(last: int, density: float) -> list[float]:
@@ -187,83 +199,71 @@ def _weights(solved: tuple[float, ...], m: int) -> np.ndarray:
     return np.concatenate([np.zeros(first), np.array(lagrange) * np.array(solved[first:]) / m])
 
 
-def _superposed(
-    solved: tuple[float, ...], loads: dict[int, np.ndarray], respond: Callable[[int, np.ndarray], np.ndarray]
-) -> dict[int, np.ndarray]:
-    """Field vector of every m under its ``loads``, (3, nodes).
-
-    respond : field vectors (n, columns) of a solution, by number, under loads (3, nodes, columns)
-    """
-    found = {m: respond(solved.index(m), loads[m][..., None])[:, 0] for m in loads if m in solved}
-    between = [m for m in loads if m not in solved]
-    if between:
-        # these loads are sums of fewer: as many as have a singular value above rounding
-        columns = np.stack([loads[m] for m in between], axis=-1)
-        flat = columns.reshape(-1, len(between))
-        U, size, V = np.linalg.svd(flat, full_matrices=False)
-        rank = int(np.count_nonzero(size > size[0] * max(flat.shape) * np.finfo(float).eps))
-        fewer = (U * size)[:, :rank].reshape(*columns.shape[:-1], rank)
-        weights = np.array([_weights(solved, m) for m in between]).T
-        total: Any = 0.0
-        for k in np.flatnonzero(weights.any(axis=1)):
-            total += respond(int(k), fewer) @ (V[:rank] * weights[k])
-        found |= dict(zip(between, total.T, strict=True))
-    return found
+def _sums(loads: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Loads (3, nodes, columns) of which ``loads`` (harmonics, 3, nodes) are sums, and their shares."""
+    flat = loads.reshape(len(loads), -1)
+    used = np.flatnonzero(flat.any(axis=0))
+    U, size, V = np.linalg.svd(flat[:, used], full_matrices=False)
+    rank = int(np.count_nonzero(size > size.max(initial=0.0) * max(flat.shape) * np.finfo(float).eps))
+    fewer = np.zeros((flat.shape[1], rank))
+    fewer[used] = V[:rank].T
+    return fewer.reshape(*loads.shape[1:], rank), U[:, :rank] * size[:rank]
 
 
 @dataclass(frozen=True, eq=False)
 class Meridian:
-    """The meridian problem of one m, factorised, for loads on the unknowns ``loaded`` of one field."""
+    """The meridian problem of one m, for loads on the unknowns ``loaded`` of one field.
+
+    order : the free unknowns, in an order that fills a factor little.   normal : u_z of ``loaded`` among them
+    Factorised for its compliance, and anew for fields: the factors of all m together take gigabytes.
+    """
 
     solid: LayeredSolid
     discretisation: Discretisation
     harmonic: float
     loaded: np.ndarray
     skeleton: Skeleton
-    factor: ConstrainedFactor
+    order: np.ndarray
+    normal: np.ndarray
 
     @classmethod
     def of(cls, solid: LayeredSolid, d: Discretisation, m: float, loaded: np.ndarray) -> "Meridian":
         count = 2 if m == 0 else 3
         axis: tuple[int, ...] = (0,) if m == 0 else (0, 2) if m == 1 else (0, 1, 2)
-        fixed = [field * d.N + d.axis for field in axis]
-        still, cells = d.outer, None
-        if m >= 2:
-            beyond = np.hypot(*d.locations) > chosen.VANISHED ** (-1 / (m + 1))
-            still, cells = np.flatnonzero(beyond), np.flatnonzero(~beyond[d.basis.element_dofs].all(axis=0))
-        K = d.skeleton(solid.materials, m, cells)
-        fixed += [field * d.N + still for field in range(count)]
+        cells = _reached(d, m)
+        still = np.append(d.outer, np.unique(d.basis.element_dofs[:, ~cells]))
+        K = d.skeleton(solid.materials, m, np.flatnonzero(cells))
+        fixed = [field * d.N + d.axis for field in axis] + [field * d.N + still for field in range(count)]
         order = (d.elimination[:, None] + d.N * np.arange(count)).ravel()
         normal = (count - 1) * d.N + loaded
         given = np.concatenate(fixed)
-        order, normal = (of[~np.isin(of, given)] for of in (order, normal))
-        return cls(solid, d, m, loaded, K, ConstrainedFactor.of(K.matrix, order, normal))
-
-    @property
-    def _work(self) -> float:
-        """Angular factor of the virtual work of harmonic loads."""
-        return 2 * np.pi if self.harmonic == 0 else np.pi
+        return cls(solid, d, m, loaded, K, *(of[~np.isin(of, given)] for of in (order, normal)))
 
     def solve(self, loads: np.ndarray) -> np.ndarray:
-        """Free unknowns (free, columns) under ``loads`` (3, nodes, columns) normal, radial and angular."""
+        """Field vectors (n, columns) under ``loads`` (3, nodes, columns) normal, radial and angular."""
         m, N = self.harmonic, self.discretisation.N
-        normal, radial, angular = loads / self._work
+        normal, radial, angular = loads / (np.pi if m else 2 * np.pi)
         # virtual work R U + T V with U = S - V
         load = [radial, normal] if m == 0 else [radial, angular - radial, normal]
         at = np.concatenate([field * N + self.loaded for field in range(len(load))])
-        far = (self._far, _resultant(m, loads)) if m < 2 else None
-        return self.factor.solve(at, np.concatenate(load), far)
+        resultant = (loads[1] - loads[2] if m else loads[0]).sum(axis=0)
+        far = (self._far, resultant) if m < 2 else None
+        factor = ConstrainedFactor.of(self.skeleton.matrix, self.order, self.order[:0])
+        whole = np.outer(*far) if far else np.zeros((len(load) * N, loads.shape[-1]))
+        whole[factor.free] = factor.solve(at, np.concatenate(load), far)
+        return self.skeleton.extended(whole)
 
     @property
     def compliance(self) -> np.ndarray:
         """u_z at the nodes by unit normal loads on each, (nodes, nodes)."""
-        row = self.factor.rows(self.skeleton.matrix.shape[0] - self.discretisation.N + self.loaded)
+        factor = ConstrainedFactor.of(self.skeleton.matrix, self.order, self.normal)
+        row = factor.rows(self.skeleton.matrix.shape[0] - self.discretisation.N + self.loaded)
         S = np.zeros((row.size, row.size))
         free = np.flatnonzero(row >= 0)
-        S[np.ix_(free, free)] = self.factor.compliance / self._work
+        S[np.ix_(free, free)] = factor.compliance / (np.pi if self.harmonic else 2 * np.pi)
         if self.harmonic == 0:  # moved by what is given far away, the same for every load
             no_load = self.loaded[:0], np.zeros((0, 1))
-            S[free] += self.factor.solve(*no_load, (self._far, np.ones(1)))[row[free]]
+            S[free] += factor.solve(*no_load, (self._far, np.ones(1)))[row[free]]
         return S
 
     @cached_property
@@ -275,14 +275,19 @@ class Meridian:
         u.reshape(len(far), d.N)[:, d.outer] = far
         return u
 
-    def extended(self, u: np.ndarray, loads: np.ndarray) -> np.ndarray:
-        """Field vectors (n, columns) of the free unknowns u under ``loads``."""
-        m, n = self.harmonic, self.skeleton.matrix.shape[0]
-        whole = np.outer(self._far, _resultant(m, loads)) if m < 2 else np.zeros((n, loads.shape[-1]))
-        whole[self.factor.free] = u
-        return self.skeleton.extended(whole)
 
+def _reached(d: Discretisation, m: float) -> np.ndarray:
+    """Whether the harmonic m of a load on r <= 1 counts in a triangle, (triangles,), or is taken as zero.
 
-def _resultant(m: float, loads: np.ndarray) -> np.ndarray:
-    """Normal (m = 0) or tangential (1) resultant (columns,) of ``loads`` as in ``Meridian.solve``."""
-    return np.asarray((loads[1] - loads[2] if m else loads[0]).sum(axis=0))
+    Beyond the load one of m >= 2 falls as the distance to the power -(m + 1). Below, at an angle phi from the
+    axis, it is tan(phi/2)^m, about exp(-m z/r), and its stresses the power -2 of r more.
+    """
+    r, z = d.locations
+    distance, numbers = np.hypot(r, z), d.basis.element_dofs
+    slope = r / np.maximum(distance + z, np.finfo(float).tiny)
+    near = (distance < chosen.VANISHED ** (-1 / (m + 1))) & (slope ** max(m - 2, 0) > chosen.VANISHED) | (
+        m < 2
+    )
+    beside = np.zeros(d.N, dtype=bool)
+    beside[numbers[:, near[numbers].any(axis=0)]] = True  # and in those next to it, lest one row be too stiff
+    return np.asarray(beside[numbers].any(axis=0))

@@ -6,7 +6,7 @@ problems (``harmonic_compliance``). What the tractions themselves add to the str
 split into harmonics.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -56,14 +56,16 @@ def discretised(
 
 @dataclass(frozen=True, eq=False)
 class OffAxisFields:
-    """The fields of all harmonics on one mesh, in scaled units.
+    """The fields of all harmonics to the ``last`` on one mesh, in scaled units.
 
-    loads : of the normal pressure, (harmonics, nodes).   surface : size of the triangles there
+    load : int p dA.   surface : size of the triangles there
     """
 
-    compliance: HarmonicCompliance
+    discretisation: Discretisation
+    solid: LayeredSolid
+    last: int
     fields: tuple[HarmonicField, ...]
-    loads: np.ndarray
+    load: float
     friction: float
     pressure: StarPressure
     surface: float
@@ -77,29 +79,23 @@ class OffAxisFields:
         pressure: StarPressure,
         surface: float,
     ) -> "OffAxisFields":
+        """Fields under a pressure of the nodal ``loads`` (harmonics, nodes)."""
         d, materials = compliance.discretisation, compliance.solid.materials
         found = compliance.displacements(loads, friction)
         fields = tuple(HarmonicField(d, u, materials, m, np.zeros_like, 0.0, False) for m, u in found.items())
-        return cls(compliance, fields, loads, friction, pressure, surface)
+        load = float(loads[0].sum())
+        return cls(d, compliance.solid, compliance.last, fields, load, friction, pressure, surface)
 
     @property
-    def discretisation(self) -> Discretisation:
-        return self.compliance.discretisation
-
-    @cached_property
-    def edges(self) -> tuple[float, ...]:
-        """x on the axis y = 0 at which the pressure has a root."""
-        return self.pressure.edges
+    def turned(self) -> "OffAxisFields":
+        """Fields with the friction the other way, by half a turn about z, of a pressure even in x."""
+        of = (replace(one, fields=(-1) ** one.harmonic * one.fields) for one in self.fields)
+        return replace(self, fields=tuple(of), friction=-self.friction)
 
     @property
     def least(self) -> float:
-        """Size of the triangles at the ``edges``."""
+        """Size of the triangles at the edges."""
         return float(surface_size(self.surface, 0.0))
-
-    @property
-    def load(self) -> float:
-        """int p dA."""
-        return float(self.loads[0].sum())
 
     def __call__(self, points: SolidPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Displacement (3, n) and stress (6, n), cylindrical, and what the last third of harmonics adds.
@@ -110,7 +106,7 @@ class OffAxisFields:
         u, s, late_u, late_s = self._summed(points)
         surface = at.z == 0
         x, along = at.r_given * points.cos, surface & (np.abs(points.sin) < 1e-9)
-        for k, edge in enumerate(self.edges):
+        for k, edge in enumerate(self.pressure.edges):
             near = np.flatnonzero(along & (np.abs(x - edge) < chosen.WITHIN * self.least))
             if near.size:
                 away = np.sign(edge) * (x[near] - edge) / self.least
@@ -120,7 +116,7 @@ class OffAxisFields:
                 s[:2, near] = more[:2] + self._root(x[near], edge)
                 late_s[:2, near] = np.abs(more - fewer)[:2] + np.abs(more[2:])
         p = np.where(surface, self.pressure(at.r_given * points.cos, at.r_given * points.sin), 0.0)
-        nu, f = self.compliance.solid.materials[0][1], self.friction
+        nu, f = self.solid.materials[0][1], self.friction
         s[:2] -= nu / (1 - nu) * p
         s[2] -= p
         s[3] -= f * p * points.cos
@@ -136,7 +132,7 @@ class OffAxisFields:
             for _, numbers, both in at.interfaces
             for side in both
         }
-        none, materials = np.zeros((3, theta.size)), self.compliance.solid.materials
+        none, materials = np.zeros((3, theta.size)), self.solid.materials
         s = stress_of(strain[0], none, at, materials, lambda side: sides[id(side)][0])
         late_s = stress_of(strain[1], none, at, materials, lambda side: sides[id(side)][1])
         return u[0], s, u[1], late_s
@@ -147,9 +143,9 @@ class OffAxisFields:
         u, strain = map(np.array, zip(*(field.amplitudes(at) for field in self.fields), strict=True))
         m = np.array([field.harmonic for field in self.fields])
         waves = np.stack([np.cos(np.outer(m, theta)), np.sin(np.outer(m, theta))], axis=1)
-        late = m > 2 / 3 * self.compliance.last
+        late = m > 2 / 3 * self.last
         u = np.tensordot([np.ones(m.size), late], u * waves[:, [0, 1, 0]], 1)
-        tapered = _taper(m / self.compliance.last), late
+        tapered = _taper(m / self.last), late
         return u, np.tensordot(tapered, strain * waves[:, [0, 0, 0, 0, 1, 1]], 1)
 
     @cached_property
@@ -161,7 +157,7 @@ class OffAxisFields:
         """
         found = []
         away = self.least * np.outer([-1, 1], np.geomspace(*chosen.BESIDE_EDGE, 24)).ravel()
-        for edge in self.edges:
+        for edge in self.pressure.edges:
             x, zero = edge + np.sign(edge) * away, np.zeros(away.size)
             located = self.discretisation.locator.points(np.abs(x), zero, zero.astype(int))
             _, s, _, late_s = self._summed(SolidPoints(located, np.sign(x), zero, x.shape))
@@ -172,7 +168,7 @@ class OffAxisFields:
 
     def _root(self, x: np.ndarray, edge: float) -> np.ndarray:
         """Root of rr and tt beside an edge, (2, n), in plane strain: of p inside, of f p outside."""
-        nu = self.compliance.solid.materials[0][1]
+        nu = self.solid.materials[0][1]
         p, mirrored = (self.pressure(at, 0 * x) for at in (x, 2 * edge - x))
         rr = 2 * self.friction * np.sign(x - edge) * mirrored - (1 - 2 * nu) / (1 - nu) * p
         return np.array([rr, nu * rr])

@@ -6,6 +6,7 @@ degrees.
 """
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, ClassVar
@@ -145,12 +146,12 @@ class ShapedContact(PressedSolid):
         """
         x, y = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
         fields, length = self._fine, self._units.length
-        edges = np.array(fields.edges) * length
+        edges = np.array(fields.pressure.edges) * length
         away = np.abs(np.hypot(x, y)[..., None] - np.abs(edges)).min(axis=-1)
         size = surface_size(fields.surface, away / length)
         h = length * np.maximum(chosen.RESOLVED * size, fields.least / 3)
-        k = np.maximum(h, np.hypot(x, y) * np.pi / (2 * fields.compliance.last))
-        nu = fields.compliance.solid.materials[0][1]
+        k = np.maximum(h, np.hypot(x, y) * np.pi / (2 * fields.last))
+        nu = fields.solid.materials[0][1]
         on_series = (y == 0) & (away < length * chosen.WITHIN * fields.least)
         missed = []
         for i, j in ((h, 0 * h), (0 * k, k)):
@@ -232,55 +233,39 @@ def solve_shape(
     E = substrate[0]
     layers = [(coatings, substrate)] + ([(ball[2], ball[:2])] if ball else [])
     compliance = sum((1 - nu**2) / modulus for _, (modulus, nu) in layers)
-    half = load / 2 if shape.centre else load
-    waves = max(shape.fold, 2)
-    axes = hertz_axes(shape.curvatures, half, compliance)
+    axes = hertz_axes(shape.curvatures, load / 2 if shape.centre else load, compliance)
     # the width of a long contact is a small share of its extent, and of the circle around its end
     slender = max(1.0, max(axes) / min(axes) / chosen.SLENDER)
     surface = usual[1] / slender**0.5 if surface is None else surface
     check_positive(surface=surface)
     rough_grid = replace(ROUGH, surface=ROUGH.surface / slender, harmonics=int(ROUGH.harmonics * slender))
-    correcting = int(chosen.CORRECTING * slender)
     begin = StarPressure.of_ellipse(
         shape.centre, (first * axes[0], first * axes[1]), load / E, shape.fold, chosen.ROUGH_DEGREE
     )
-    least = usual[3] * waves if degree is None else degree
+    least = usual[3] * max(shape.fold, 2) if degree is None else degree
     most = 2 * least if degree is None else degree
 
-    def solids(reach: float) -> tuple[LayeredSolid, ...]:
-        scaled = tuple(LayeredSolid.scaled(*one, reach, far, E) for one in layers)
-        widest = max(one.far for one in scaled)
-        for one, name in zip(scaled, ("", "ball "), strict=False):
-            check_proportions(one.thicknesses, "the contact's extent", name)
-        return tuple(replace(one, far=widest) for one in scaled)
-
-    def on_mesh(
-        reach: float, grid: ShapedGrid, begin: StarPressure, enough: float = chosen.EDGE_SIZE
-    ) -> Closed:
+    def on_mesh(reach: float, grid: ShapedGrid, begin: StarPressure, enough: float) -> Closed:
         """The contact [reach] on a mesh to the radius ``reach`` [m]."""
         start = begin.scaled(reach)
         # vertices at the radii of the edge on y = 0 and of its sides, none right beside another
         radii = sorted({round(abs(x), 4) for x in (*start.edges, start.extents[1])})
         pairs = zip(radii, [0.0, *radii], strict=False) if grid is not rough_grid else ()
         apart = tuple(r for r, before in pairs if r - before > grid.surface / 10)
-        bodies = solids(reach)
-        stacks = tuple(one.thicknesses for one in bodies)
+        scaled = [LayeredSolid.scaled(*one, reach, far, E) for one in layers]
+        bodies = [replace(one, far=max(each.far for each in scaled)) for one in scaled]
+        for one, name in zip(bodies, ("", "ball "), strict=False):
+            check_proportions(one.thicknesses, "the contact's extent", name)
+        # graded as if no interface were nearer than a triangle of the surface is wide
+        depths = (np.maximum(np.cumsum(one.thicknesses), grid.surface) for one in bodies)
+        stacks = tuple(tuple(np.diff(of, prepend=0.0).tolist()) for of in depths)
         inner = max(0.0, start.reach[0] - (grid.margin - 1))
-        compliances = tuple(
-            harmonic_compliance(
-                one,
-                discretised(one, grid.size, grid.surface, order, growth=0.7, edges=apart, stacks=stacks),
-                grid.harmonics,
-                shape.turns,
-                grid.density,
-                inner,
-            )
-            for one in bodies
-        )
-        return closed(compliances, start, *arguments(reach, grid), enough)
-
-    def arguments(reach: float, grid: ShapedGrid) -> tuple[Height, float, int]:
-        return shape.scaled(reach), load / (E * reach**2), min(correcting, grid.harmonics)
+        made = {}
+        for one in dict.fromkeys(bodies):  # two bodies of the same layers are one
+            d = discretised(one, grid.size, grid.surface, order, growth=0.7, edges=apart, stacks=stacks)
+            made[one] = harmonic_compliance(one, d, grid.harmonics, shape.turns, grid.density, inner)
+        height, last = shape.scaled(reach), min(int(chosen.CORRECTING * slender), grid.harmonics)
+        return closed(tuple(made[one] for one in bodies), start, height, load / (E * reach**2), last, enough)
 
     for _ in range(chosen.MOST_STEPS):
         reach = ROUGH.margin * begin.reach[1]
@@ -293,45 +278,35 @@ def solve_shape(
     reach = float(f"{chosen.MARGIN * begin.reach[1]:.6g}")
     if harmonics is None:
         at_end = np.pi / begin.scaled(reach).end_angle(float(surface_size(surface, 0.0)))
-        fold = shape.turns
-        harmonics = fold * int(np.ceil(usual[2] / fold * max(1.0, chosen.AT_END * at_end / default[2])))
+        turns = usual[2] / shape.turns * max(1.0, chosen.AT_END * at_end / default[2])
+        harmonics = shape.turns * int(np.ceil(turns))
     check_positive(harmonics=harmonics)
     unit = Scales(length=reach, pressure=E, modulus=E)
 
     grid = ShapedGrid(size, surface, harmonics, chosen.MARGIN, chosen.DENSITY)
     r = chosen.SHAPED_COARSER
     coarser = replace(grid, size=r * size, surface=r * surface, density=grid.density / r)
-    first_found = on_mesh(reach, grid, begin.of_degree(least))
-    first_found.check(shape.scaled(reach), indenter[0])
-    companion_first = on_mesh(reach, coarser, first_found.pressure.scaled(1 / reach))
-    poorest = OnTwoMeshes(first_found, companion_first)
-
-    def of_degree(degree: int) -> OnTwoMeshes:
-        return OnTwoMeshes(
-            poorest.found.of_degree(degree, *arguments(reach, grid)),
-            poorest.companion.of_degree(degree, *arguments(reach, coarser)),
-        )
-
-    both, lower = as_rich_as_helps(poorest, of_degree, most)
+    first_found = on_mesh(reach, grid, begin.of_degree(least), chosen.EDGE_SIZE)
+    first_found.check(indenter[0])
+    companion_first = on_mesh(reach, coarser, first_found.pressure.scaled(1 / reach), chosen.EDGE_SIZE)
+    both, lower = as_rich_as_helps(OnTwoMeshes(first_found, companion_first), most)
     found = both.found
-    found.check(shape.scaled(reach), indenter[0])
-    numbers, residual = _numbers(found), found.residual(shape.scaled(reach))
-    sliding = (friction, -friction)
-    fine = [_fields(found, k, sliding[k], surface) for k in range(len(layers))]
-    coarse: list[OffAxisFields | None] = [None] * len(layers)
+    found.check(indenter[0])
+    numbers, units = _numbers(found), np.array([reach, reach, E, reach, reach])
+    fine = _fields(found, friction, surface)
+    coarse: Sequence[OffAxisFields | None] = [None] * len(layers)
     uncertainty, extents, estimate = None, None, None
     if estimate_uncertainty:
         companion, fewer = both.companion, lower.companion
         estimate = StarEstimate(found.pressure, companion.pressure, lower.found.pressure)
-        coarse = [_fields(fewer, k, sliding[k], r * surface) for k in range(len(layers))]
+        coarse = _fields(fewer, friction, r * surface)
         change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
         # in a change of the area parts of the edge may make up for each other
         change[0] = BY_CONDITIONS * found.moved(companion) * numbers[0]
         change[1] = max(change[1], chosen.STIFF * slender * (size / default[0]) ** 4 * numbers[1])
         cut = chosen.OF_FIELDS * np.abs(numbers - _numbers(lower.found))
         cut[0] = chosen.OF_FIELDS * found.moved(lower.found) * numbers[0]
-        left = np.maximum(residual, chosen.OF_FIELDS * found.errors) * np.abs(numbers)
-        units = np.array([reach, reach, E, reach, reach])
+        left = np.maximum(found.residual, chosen.OF_FIELDS * found.errors) * np.abs(numbers)
         names = ("contact_radius", "approach", "peak_pressure")
         parts = (("element size", change), ("degree of the pressure", cut), ("gap left", left))
         budget = tuple(
@@ -342,8 +317,10 @@ def solve_shape(
         # no extent is better known than the contact radius: the edge may be at rest at its ends by chance
         ends = np.maximum(total[3:], total[0] / numbers[0] * numbers[3:])
         extents = float(ends[0]), float(ends[1])
-    d = fine[0].discretisation
+    d, load_error = fine[0].discretisation, abs(fine[0].load * unit.load / load - 1)
+    reached = 3 * d.N, int(d.mesh.layer.size), found.residual, load_error, time.perf_counter() - began
     nodes = np.linspace(0, 2.6 * found.pressure.extents[0], 160)
+    scalars: tuple[float, float, float, float, float] = tuple((numbers * units).tolist())
     sides: list[ShapedContact] = []
     for k in range(len(layers))[::-1]:
         pair = fine[k], coarse[k]
@@ -351,21 +328,9 @@ def solve_shape(
             ShapedContact(
                 *pair,
                 unit,
-                contact_radius=float(numbers[0]) * reach,
-                approach=float(numbers[1]) * reach,
-                peak_pressure=float(numbers[2]) * E,
-                extent_x=float(numbers[3]) * reach,
-                extent_y=float(numbers[4]) * reach,
+                *scalars,
                 surface_nodes=np.concatenate([-nodes[:0:-1], nodes]) * reach,
-                diagnostics=ShapedDiagnostics(
-                    steps=rough.steps + found.steps,
-                    harmonics=harmonics,
-                    dofs=3 * d.N,
-                    triangles=int(d.mesh.layer.size),
-                    residual_gap=residual,
-                    residual_load=abs(fine[0].load * unit.load / load - 1),
-                    seconds=time.perf_counter() - began,
-                ),
+                diagnostics=ShapedDiagnostics(rough.steps + found.steps, harmonics, *reached),
                 uncertainty=uncertainty,
                 extent_uncertainty=extents,
                 height=shape.height,
@@ -377,20 +342,22 @@ def solve_shape(
     return sides[-1]
 
 
-def _fields(found: Closed, body: int, friction: float, surface: float) -> OffAxisFields:
-    return OffAxisFields.of(found.compliances[body], found.nodal_loads, friction, found.pressure, surface)
+def _fields(found: Closed, friction: float, surface: float) -> list[OffAxisFields]:
+    """Fields of each body; traction acts on the second in -x."""
+    first, *others = found.compliances
+    fields = [OffAxisFields.of(first, found.nodal_loads, friction, found.pressure, surface)]
+    for one in others:
+        same, of = one is first and one.fold % 2 == 0, (-friction, found.pressure, surface)
+        fields.append(fields[0].turned if same else OffAxisFields.of(one, found.nodal_loads, *of))
+    return fields
 
 
 def _typical(solid: PressedSolid) -> float:
     """Change of the stress [Pa] from the companion, exceeded at few points below the contact."""
-    radii, turns, depths = chosen.TYPICAL_POINTS
-    reach = solid._units.length
-    r, theta, z = np.meshgrid(
-        reach * (np.arange(radii) + 0.4) / radii,
-        np.pi * (np.arange(turns) + 0.3) / turns,
-        reach * (0.1 + np.arange(depths) / depths),
-    )
-    _, U = solid.sample(ElementPoints(r * np.cos(theta), r * np.sin(theta), z), "stress")
+    shares = ((np.arange(n) + at) / n for n, at in zip(chosen.TYPICAL_POINTS, (0.4, 0.3, 0.0), strict=True))
+    r, turn, z = np.meshgrid(*shares)
+    x, y, z = solid._units.length * np.array([r * np.cos(np.pi * turn), r * np.sin(np.pi * turn), 0.1 + z])
+    _, U = solid.sample(ElementPoints(x, y, z), "stress")
     return float(np.percentile(U[0, 0], chosen.TYPICAL))
 
 

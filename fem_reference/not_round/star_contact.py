@@ -11,7 +11,7 @@ ellipse all c_n vanish, and p is a polynomial in X and Y times the root of Hertz
 """
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -20,6 +20,8 @@ from scipy.special import ellipe, ellipk
 
 from fem_reference import element_numbers as chosen
 from fem_reference.elasticity.line_quadrature import gauss_legendre
+
+_of_angle = lru_cache(gauss_legendre)
 
 
 def hertz_axes(curvatures: tuple[float, float], load: float, compliance: float) -> tuple[float, float]:
@@ -85,6 +87,20 @@ class StarPressure:
         turn = (s * np.exp(1j * tau)) ** self.fold
         waves = np.polynomial.polynomial.polyvander(turn, degree // self.fold).real
         return np.array([waves[..., n // self.fold] * T[..., j] for n, j in self.terms(degree)])
+
+    @property
+    def radial_slope(self) -> np.ndarray:
+        """Coefficients of s d/ds of the polynomial in the pressure, of the same terms.
+
+        s dT_j/ds = 2 j (T_j + 2 T_(j-1) + .. + 2 T_1 + T_0)
+        """
+        n, j = np.array(self.terms(self.degree)).T
+        found, steeper = n * self.coefficients, 4 * j * self.coefficients
+        for wave in self.waves:
+            of_wave = np.flatnonzero(n == wave)
+            rising = np.cumsum(steeper[of_wave[::-1]])[::-1] - steeper[of_wave] / 2
+            found[of_wave] += np.where(j[of_wave] > 0, rising, rising / 2)
+        return found
 
     def _wave(self, at: np.ndarray) -> np.ndarray:
         """sum_n c_n Re at^n."""
@@ -153,13 +169,14 @@ class StarPressure:
         X, Y = np.where(w < 1, np.array(other.points(np.minimum(w, 1), tau)), at + other_edge - edge)
         return np.where((x < 0) & (self.centre != 0), -1, 1) * X, np.where(y < 0, -1, 1) * Y
 
-    def quadrature(self, vertices: np.ndarray, last: int) -> "Quadrature":
-        """Points on half circles about the origin between the ``vertices``, for harmonics to ``last``.
+    def quadrature(self, vertices: np.ndarray, last: int, fold: int) -> list["Quadrature"]:
+        """Points on arcs about the origin between the ``vertices``, for harmonics 0, fold, .. to ``last``.
 
-        By Gauss-Legendre on the arcs inside the contact, towards whose ends p falls like a square root.
+        By Gauss-Legendre on the arcs inside the contact, towards whose ends p falls like a square root, in
+        half of one of the ``fold`` turns that leave p as it is. Those of similar length are together.
         """
         r, of_r = gauss_legendre(chosen.RADIAL, vertices[:-1], vertices[1:])
-        theta = np.pi * np.arange(chosen.ARC_SAMPLES + 1) / chosen.ARC_SAMPLES
+        theta = np.linspace(0, np.pi / fold, chosen.ARC_SAMPLES // fold + 1)
 
         def within(r: np.ndarray, theta: np.ndarray) -> np.ndarray:
             return self.polar(r * np.cos(theta), r * np.sin(theta))[0] < 1
@@ -172,19 +189,27 @@ class StarPressure:
             same = within(r[ring], middle) == inside[ring, place]
             low, high = np.where(same, middle, low), np.where(same, high, middle)
         rings = np.concatenate([ring, *(np.flatnonzero(inside[:, end]) for end in (0, -1))])
-        ends = np.concatenate([low, np.zeros(inside[:, 0].sum()), np.full(inside[:, -1].sum(), np.pi)])
+        ends = np.concatenate([low, np.zeros(inside[:, 0].sum()), np.full(inside[:, -1].sum(), theta[-1])])
         order = np.lexsort((ends, rings))
-        arc, (begin, end) = rings[order][::2], ends[order].reshape(-1, 2).T
-        t, weight = gauss_legendre(int(chosen.ANGULAR[0] + chosen.ANGULAR[1] * last), -np.pi / 2, np.pi / 2)
-        angle = (begin + end)[:, None] / 2 + (end - begin)[:, None] / 2 * np.sin(t)
-        of_angle = (end - begin)[:, None] / 2 * np.cos(t) * weight
-        x, y = r[arc, None] * np.cos(angle), r[arc, None] * np.sin(angle)
-        weights = 2 * (of_r * r)[arc, None] * of_angle
-        x, y, weights = x.ravel(), y.ravel(), weights.ravel()
-        w, tau = self.polar(x, y)
-        w = np.minimum(w, 1 - 1e-14)
-        s = np.minimum(self.smooth(w, tau), 1 - 1e-14)
-        return Quadrature(r[arc], angle, w, s, tau, x, y, weights)
+        begin, end = ends[order].reshape(-1, 2).T
+        by_length = np.argsort(end - begin)
+        batches = []
+        for some in np.split(
+            by_length, range(chosen.COLUMNS_AT_ONCE, by_length.size, chosen.COLUMNS_AT_ONCE)
+        ):
+            middle, half = (end + begin)[some, None] / 2, (end - begin)[some, None] / 2
+            waves = chosen.ANGULAR[1] * last * 2 * float(half.max(initial=0.0)) / np.pi
+            # a multiple of the least number, so that few rules are made
+            count = chosen.ANGULAR[0] * (1 + int(np.ceil(waves / chosen.ANGULAR[0])))
+            t, weight = _of_angle(count, -np.pi / 2, np.pi / 2)
+            arc = rings[order][::2][some]
+            angle = middle + half * np.sin(t)
+            weights = 2 * fold * (of_r * r)[arc, None] * half * np.cos(t) * weight
+            x, y = r[arc, None] * np.cos(angle), r[arc, None] * np.sin(angle)
+            w, tau = self.polar(x, y)
+            s = np.minimum(self.smooth(np.minimum(w, 1 - 1e-14), tau), 1 - 1e-14)
+            batches.append(Quadrature(r[arc], angle, s, tau, x, y, weights))
+        return batches
 
     @property
     def contour_points(self) -> tuple[np.ndarray, np.ndarray]:
@@ -240,12 +265,13 @@ class StarPressure:
 
 @dataclass(frozen=True, eq=False)
 class Quadrature:
-    """Points on arcs of radius r (arcs,) at angles theta (arcs, points); w, s, tau, x, y and ``weights`` of
-    them all, of integrals over the whole contact."""
+    """Points on arcs of radius r (arcs,) at angles theta (arcs, points), their s, tau, x and y.
+
+    weights : of integrals over the whole contact
+    """
 
     r: np.ndarray
     theta: np.ndarray
-    w: np.ndarray
     s: np.ndarray
     tau: np.ndarray
     x: np.ndarray
