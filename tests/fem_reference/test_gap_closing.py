@@ -41,20 +41,34 @@ def test_a_ball_without_a_modulus_is_refused():
 def test_a_pressure_that_pulls_is_refused():
     pushing = StarPressure.of_ellipse(0.0, (1.0, 0.4), 1.0, 2, 12)
     pulling = replace(pushing, coefficients=-pushing.coefficients)
+    found = Closed((), pulling, 1.0, 3, True, np.zeros((1, 1)), (lambda x, y: 0 * x, 1.0, 12))
     with pytest.raises(ElementsNotConverged, match="the pressure under the punch is negative"):
-        Closed((), pulling, 1.0, 3, True, np.zeros((1, 1))).check(lambda x, y: 0 * x, "punch")
+        found.check("punch")
 
 
 @dataclass
 class OfDegree:
-    """A contact whose edge is as uncertain as ``errors`` says of its degree."""
+    """A contact by a pressure of a degree.
 
-    found: SimpleNamespace
-    companion: SimpleNamespace
-    error: float
+    errors : uncertainty of its edge at degree 8, 10, ..   resting : the highest degree whose contour rests
+    """
+
+    degree: int
+    errors: tuple[float, ...]
+    resting: int
+
+    @property
+    def found(self):
+        pressure = SimpleNamespace(degree=self.degree)
+        return SimpleNamespace(pressure=pressure, converged=self.degree <= self.resting)
+
+    companion = found
 
     def uncertain(self, _):
-        return self.error
+        return self.errors[(self.degree - 8) // 2]
+
+    def by(self, more):
+        return replace(self, degree=self.degree + more)
 
 
 @pytest.mark.parametrize(
@@ -63,9 +77,5 @@ class OfDegree:
     ids=["richer is better", "richer is worse", "a richer one is not at rest"],
 )
 def test_a_pressure_is_as_rich_as_helps_and_rests(errors, resting, best):
-    def of_degree(degree):
-        one = SimpleNamespace(pressure=SimpleNamespace(degree=degree), converged=degree <= resting)
-        return OfDegree(one, one, errors[(degree - 8) // 2] if degree >= 8 else 9)
-
-    chosen, lower = as_rich_as_helps(of_degree(8), of_degree, 8 + 2 * (len(errors) - 1))
-    assert (chosen.found.pressure.degree, lower.found.pressure.degree) == (best, best - 2)
+    chosen, lower = as_rich_as_helps(OfDegree(8, errors, resting), 8 + 2 * (len(errors) - 1))
+    assert (chosen.degree, lower.degree) == (best, best - 2)

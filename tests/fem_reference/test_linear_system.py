@@ -96,10 +96,10 @@ class DensePardiso:
         return np.linalg.solve(self.factor.T, np.linalg.solve(self.factor, load))
 
 
-def test_pardiso_is_given_the_upper_triangle_of_the_stiffness(monkeypatch):
+def test_pardiso_is_given_the_upper_triangle_of_the_stiffness(monkeypatch, environment):
     monkeypatch.setitem(sys.modules, "pypardiso", SimpleNamespace(PyPardisoSolver=DensePardiso))
     monkeypatch.setattr(linear_system, "_PARDISO", True)
-    monkeypatch.setenv("PYPARDISO_MKL_RT", "mkl")
+    environment(PYPARDISO_MKL_RT="mkl")
     K, given, fixed, load = problem(1)
     found = constrained_solve(K, given, fixed, load)
     np.testing.assert_allclose(found.u, dense(K, given, np.unique(fixed), load), rtol=0, atol=1e-11)
