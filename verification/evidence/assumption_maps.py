@@ -199,9 +199,7 @@ class AssumptionMap:
         nodes = [axis.nodes for axis in self.axes]
         # with fewer nodes where the model had no answer at some of four
         for most in (4, 2):
-            value, error = interpolated(
-                self._scaled, [axis.nodes for axis in self.axes], positions, below, most
-            )
+            value, error = interpolated(self._scaled, nodes, positions, below, most)
             if np.isfinite(value).any():
                 break
         near = [window(along, x, 2) for along, x in zip(nodes, positions, strict=True)]

@@ -149,8 +149,7 @@ def quantities(
                 candidates = []
                 for layer in body:
                     measure = with_residual(von_mises, stress if layer == swept else 0.0)
-                    outer = layered[layer][:: len(layered[layer]) - 1]
-                    candidates += [largest(plane, measure, f) for plane in outer]
+                    candidates += [largest(layered[layer][end], measure, f) for end in (0, -1)]
                     candidates += inside(parts, grids[layer], f, measure)
                 here[name] = max(candidates, key=lambda place: place.value)
             found[stress, f] = dict(zip(here, stated(list(here.values()), parts, f), strict=True))
