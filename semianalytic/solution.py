@@ -220,8 +220,11 @@ class Solution:
             at_surface = PatchPoints(x, y, body=points.body, frame=points.frame)
             U = self._of_patch_size(at_surface, "pressure") + other
             shift, moves = self._uncertain_reach, at_edge(points)
-            at = [np.where(moves, *two) for two in zip(self._out_of_cut(x, y, 0.0), (x, y), strict=True)]
-            of_level, moved = self._level.pressure(*at), (shape.widened(s) for s in (-shift, shift))
+            at, of_level = [x, y], p
+            if moves.any():
+                at = [np.where(moves, *two) for two in zip(self._out_of_cut(x, y, 0.0), at, strict=True)]
+                of_level = self._level.pressure(*at)
+            moved = (shape.widened(s) for s in (-shift, shift))
             return PatchAnswer(p, U + np.max([np.abs(q.pressure(*at) - of_level) for q in moved], axis=0))
         changed = interpolated(self.nodes, self._refinement, x, y, order=1)
         least = other + numbers.BY_PATCHES[1] * self.peak_pressure

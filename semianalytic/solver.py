@@ -104,12 +104,10 @@ def solve(
     solution = Solution.of_levels(levels[-3:], body, estimate, began)
     if levels[-1].shape is None:
         return solution
-    level = next(
-        (one for one in levels[-2::-1] if one.shape and one.grid.n <= numbers.BESIDE_GRID), levels[-1]
-    )
+    beside = [one for one in levels[-2::-1] if one.shape and one.grid.n <= numbers.BESIDE_GRID]
     error = estimate.approach if estimate else None
-    beside = Neighbours(sphere, level, levels[-1].load, solution.approach, error, body, numerics)
-    return replace(solution, neighbours=beside)
+    of = beside or levels[-1:], levels[-1].load, solution.approach, error
+    return replace(solution, neighbours=Neighbours(sphere, *of, body, numerics))
 
 
 def _refined(

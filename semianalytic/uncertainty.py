@@ -156,32 +156,12 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
     finest."""
     last, varied = levels[-1], levels[-3]
     others = {
-        "edge": _of_edge(last),
+        "edge": last.of_edge,
         "conversion": _by_other_coefficients(varied, body, numerics, other_conversion(numerics), 1.0),
         "domain": _by_other_coefficients(varied, body, numerics, numerics, numbers.FINER),
         "iteration": _of_iteration(last, indenter),
     }
     return Uncertainty.from_levels(levels[:-4:-1], others)
-
-
-def _of_edge(level: Level) -> dict[str, float]:
-    """Effect of an edge that its own grid leaves uncertain: between the centres of patches, or a staircase.
-
-    The approach is stationary in the contact's area: it changes as the square of the pressure where the edge
-    may be, which is of the second order at a smooth edge and of the first at that of a punch. Patches that a
-    smooth edge cuts leave ``SECOND`` times the square of their share of the radius.
-    """
-    moved, shape, left, at_edge = level.edge_error / level.radius, level.shape, 0.0, level.load_at_edge
-    if shape is not None:
-        left = numbers.SECOND * (level.grid.d / min(shape.axes)) ** 2
-        p = shape.pressure(*shape.on_ray(max(1 - moved, 0.0), np.pi / 4 * np.arange(8)))
-        at_edge = float(np.mean(p**2)) / 2 / level.scalars["peak_pressure"] ** 2
-    of_peak = left + moved**2 + 2 * level.unsettled / level.radius if shape is not None else 0.0
-    return {
-        "contact_radius": level.edge_error,
-        "approach": level.found.approach * (left + at_edge * moved + moved**2),
-        "peak_pressure": level.scalars["peak_pressure"] * of_peak,
-    }
 
 
 def is_met(accuracy: float, estimate: Uncertainty, levels: list[Level]) -> bool:

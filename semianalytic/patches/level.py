@@ -116,6 +116,27 @@ class Level:
         inner = loaded[2:, 1:-1] & loaded[:-2, 1:-1] & loaded[1:-1, 2:] & loaded[1:-1, :-2]
         return float(np.mean(p[(p > 0) & ~inner] ** 2) / p.max() ** 2)
 
+    @cached_property
+    def of_edge(self) -> dict[str, float]:
+        """Effect of an edge that its own grid leaves uncertain: between centres of patches, or a staircase.
+
+        The approach is stationary in the contact's area: it changes as the square of the pressure where the
+        edge may be, which is of the second order at a smooth edge and of the first at that of a punch.
+        Patches that a smooth edge cuts leave ``SECOND`` times the square of their share of the radius.
+        """
+        moved, shape, left, at_edge = self.edge_error / self.radius, self.shape, 0.0, self.load_at_edge
+        peak = self.scalars["peak_pressure"]
+        if shape is not None:
+            left = numbers.SECOND * (self.grid.d / min(shape.axes)) ** 2
+            p = shape.pressure(*shape.on_ray(max(1 - moved, 0.0), np.pi / 4 * np.arange(8)))
+            at_edge = float(np.mean(p**2)) / 2 / peak**2
+        of_peak = left + moved**2 + 2 * self.unsettled / self.radius if shape is not None else 0.0
+        return {
+            "contact_radius": self.edge_error,
+            "approach": self.found.approach * (left + at_edge * moved + moved**2),
+            "peak_pressure": peak * of_peak,
+        }
+
     @property
     def whole(self) -> "Level":
         """Level on all the patches, not a quarter of them."""

@@ -1,5 +1,6 @@
 """Stiffness of a round contact, from contacts at neighbouring loads."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -31,12 +32,12 @@ class Sphere:
 class Neighbours:
     """Contacts at loads next to that of a solution.
 
-    level : of the next coarser grid, at most 513 patches a side, whose edge is smooth.  approach,
-    uncertainty : of the finest grid [m], the latter None where it was not estimated.
+    levels : of the coarser grids of at most 513 patches a side whose edge is smooth, the finest first.
+    approach, uncertainty : of the finest grid [m], the latter None where it was not estimated.
     """
 
     sphere: Sphere
-    level: Level
+    levels: Sequence[Level]
     load: float
     approach: float
     uncertainty: float | None
@@ -48,21 +49,23 @@ class Neighbours:
         """d load / d approach [N/m] and its uncertainty.
 
         From d ln W / d ln delta by central differences, which Hertz's contact makes exact. The patches grow
-        with the contact, so that its edge cuts them alike and their errors cancel.
+        with the contact, so that its edge cuts them alike and their errors cancel: on the finest grid on
+        which every edge is known to ``SHARED_NOISE`` of the approach, else where it is known best.
         """
-        level, body = self.level, self.body
-        numerics = replace(self.numerics, max_iterations=numbers.FURTHER * self.numerics.max_iterations)
-        radius = partial(hertz_radius, self.sphere.radius, approach=None, body=body)
-        slopes, found = [], [level, level]
-        for step in numbers.STEPS:
-            for k, factor in enumerate((1 + step, 1 / (1 + step))):
-                load = level.load * factor
-                size = level.grid.d * radius(load) / radius(level.load)
-                nearest = found[k] if found[k].shape is not None else level
-                start, grid = _stretched(nearest, size, load), replace(level.grid, d=size)
-                pressed = self.sphere.indenter(load, None, edge_correction=True)
-                found[k] = nested.solve_on(grid, start, pressed, body, numerics)
-            ends = [np.log([one.load, one.found.approach]) for one in found]
+        found = []
+        for level in self.levels:
+            beside = self._pressed(level)
+            own = level.of_edge["approach"] / level.found.approach  # patches cut alike are wrong alike
+            of_edges = max(
+                one.of_edge["approach"] / one.found.approach - own for pair in beside for one in pair
+            )
+            found.append((of_edges, level, beside))
+            if of_edges <= numbers.SHARED_NOISE:
+                break
+        of_edges, level, beside = min(found, key=lambda one: one[0])
+        slopes = []
+        for pair in beside:
+            ends = [np.log([one.load, one.found.approach]) for one in pair]
             slopes.append(float(np.divide(*(ends[0] - ends[1]))))
         slope = slopes[0] + (slopes[0] - slopes[1]) * numbers.STEPS[0] ** 2 / (
             numbers.STEPS[1] ** 2 - numbers.STEPS[0] ** 2
@@ -74,10 +77,26 @@ class Neighbours:
             self.approach / level.found.approach - 1
         )
         # those of the approaches, over the smaller of their differences, whose slope has the larger weight
-        error += max(self.uncertainty / self.approach, numbers.SHARED_NOISE) / float(
-            np.log1p(numbers.STEPS[0])
-        )
+        of_approach = max(self.uncertainty / self.approach, numbers.SHARED_NOISE, of_edges)
+        error += of_approach / float(np.log1p(numbers.STEPS[0]))
         return stiffness, stiffness * error
+
+    def _pressed(self, level: Level) -> list[list[Level]]:
+        """Contacts at a step's more and less than the load of ``level``, each started from the nearest."""
+        numerics = replace(self.numerics, max_iterations=numbers.FURTHER * self.numerics.max_iterations)
+        radius = partial(hertz_radius, self.sphere.radius, approach=None, body=self.body)
+        beside, nearest = [], [level, level]
+        for step in numbers.STEPS:
+            found = []
+            for start, factor in zip(nearest, (1 + step, 1 / (1 + step)), strict=True):
+                load = level.load * factor
+                size = level.grid.d * radius(load) / radius(level.load)
+                before, grid = _stretched(start, size, load), replace(level.grid, d=size)
+                pressed = self.sphere.indenter(load, None, edge_correction=True)
+                found.append(nested.solve_on(grid, before, pressed, self.body, numerics))
+            nearest = [one if one.shape is not None else level for one in found]
+            beside.append(found)
+        return beside
 
 
 def hertz_radius(radius: float, load: float | None, approach: float | None, body: Body) -> float:
