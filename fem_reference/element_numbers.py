@@ -81,8 +81,7 @@ DIRECT = 8  # harmonics below are solved one by one
 # What is left of a harmonic m >= 2, which falls as the power m + 1 of the distance from the axis in contact
 # radii, where it is taken as zero
 VANISHED = 2e-6
-# Nodes of the mesh times solutions, factorised and kept: 8e5 take some 5 GB, the companion's 3 more. Films of
-# a hundredth of a long contact need more.
+# Nodes of the mesh times solutions, for memory and time. Films of a hundredth of a long contact need more.
 MOST_KEPT = 8e5
 # Points of the interpolation beyond for a factor e of m: 5 change no stress by 1e-5 p_h, 2.8 by 2e-3.
 DENSITY = 3.1

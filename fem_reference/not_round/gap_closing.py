@@ -203,22 +203,25 @@ class OnTwoMeshes:
         return OnTwoMeshes(self.found.of_degree(degree), self.companion.of_degree(degree))
 
 
-def as_rich_as_helps(poorest: OnTwoMeshes, most: int) -> tuple[OnTwoMeshes, OnTwoMeshes]:
-    """The contact by that degree of the pressure whose edge is least uncertain, and by the next lower one.
+def as_rich_as_helps(poorest: OnTwoMeshes, most: int) -> tuple[OnTwoMeshes, list[OnTwoMeshes]]:
+    """The contact by that degree of the pressure whose edge is least uncertain; by the next lower degree and
+    those tried beyond.
 
     What elements miss at the edge cannot be closed, and a pressure of too many terms follows it: degrees from
-    that of the ``poorest`` to ``most`` are tried until ``WORSE`` in turn are worse than the best.
+    that of the ``poorest`` to ``most`` are tried until ``WORSE`` in turn are worse than the best. Its change
+    from the lower one is the least of all, maybe by chance: those from the others tell that.
     """
     tried = [poorest.by(-2), poorest]
     best, uncertain = 1, tried[1].uncertain(tried[0])
     while tried[-1].found.pressure.degree + 2 <= most and len(tried) - 1 - best < chosen.WORSE:
-        tried.append(tried[-1].by(2))
-        if not (tried[-1].found.converged and tried[-1].companion.converged):
+        more = tried[-1].by(2)
+        if not (more.found.converged and more.companion.converged):
             break
-        more = tried[-1].uncertain(tried[-2])
-        if more < uncertain:
-            best, uncertain = len(tried) - 1, more
-    return tried[best], tried[best - 1]
+        tried.append(more)
+        less = more.uncertain(tried[-2])
+        if less < uncertain:
+            best, uncertain = len(tried) - 1, less
+    return tried[best], [tried[best - 1], *tried[best + 1 :]]
 
 
 def _forces(pressure: StarPressure, at: Quadrature) -> tuple[np.ndarray, np.ndarray]:

@@ -21,7 +21,7 @@ from fem_reference.not_round.harmonic_compliance import harmonic_compliance
 from fem_reference.not_round.indenter_height import Height, Indenter, touching_shape
 from fem_reference.not_round.off_axis import OffAxisFields, PressedSolid, discretised
 from fem_reference.not_round.star_contact import StarPressure, hertz_axes
-from fem_reference.not_round.star_estimate import StarEstimate, uncertain_by
+from fem_reference.not_round.star_estimate import StarEstimate, by_degree
 from fem_reference.scaling import Coatings, LayeredSolid, Scales
 from fem_reference.validation import (
     check_ball,
@@ -70,7 +70,7 @@ class ShapedContact(PressedSolid):
 
     contact_radius : of the disc of the contact's area.  extent_x, extent_y : largest x and y of the contact
     uncertainty : of contact radius, approach, peak pressure.  extent_uncertainty : of either extent
-    estimate : of the pressure; the fields of the companion have its lower degree
+    estimate : of the pressure; the fields of the companion have the next lower degree
     typical : change of the stress [Pa] from the companion below the contact: it is small by chance at points
     opposite : this contact with the fields of the elastic ball, None where that is rigid
     """
@@ -170,8 +170,8 @@ class ShapedContact(PressedSolid):
         if not stated or self.estimate is None:
             return ElementAnswer(p)
         U = self.estimate.of_pressure(*self._scaled(points.x, points.y)) * self._units.pressure
-        others = (self._other(points, one) for one in (self.estimate.companion, self.estimate.lower))
-        return ElementAnswer(p, np.maximum(uncertain_by(p, *others), U))
+        there = self.estimate.of_values(lambda one: self._other(points, one))
+        return ElementAnswer(p, np.maximum(there, U))
 
     def _scaled(self, *coordinates: Any) -> tuple[np.ndarray, ...]:
         return tuple(np.asarray(one) / self._units.length for one in coordinates)
@@ -289,7 +289,7 @@ def solve_shape(
     first_found = on_mesh(reach, grid, begin.of_degree(least), chosen.EDGE_SIZE)
     first_found.check(indenter[0])
     companion_first = on_mesh(reach, coarser, first_found.pressure.scaled(1 / reach), chosen.EDGE_SIZE)
-    both, lower = as_rich_as_helps(OnTwoMeshes(first_found, companion_first), most)
+    both, others = as_rich_as_helps(OnTwoMeshes(first_found, companion_first), most)
     found = both.found
     found.check(indenter[0])
     numbers, units = _numbers(found), np.array([reach, reach, E, reach, reach])
@@ -297,15 +297,16 @@ def solve_shape(
     coarse: Sequence[OffAxisFields | None] = [None] * len(layers)
     uncertainty, extents, estimate = None, None, None
     if estimate_uncertainty:
-        companion, fewer = both.companion, lower.companion
-        estimate = StarEstimate(found.pressure, companion.pressure, lower.found.pressure)
-        coarse = _fields(fewer, friction, r * surface)
-        change = BY_CONDITIONS * np.abs(numbers - _numbers(companion))
-        # in a change of the area parts of the edge may make up for each other
-        change[0] = BY_CONDITIONS * found.moved(companion) * numbers[0]
+        companion, (lower, *beyond) = both.companion, others
+        richer = tuple((one.found, one.companion) for one in beyond)
+        pairs = tuple((one.pressure, on_companion.pressure) for one, on_companion in richer)
+        estimate = StarEstimate(found.pressure, companion.pressure, lower.found.pressure, pairs)
+        coarse = _fields(lower.companion, friction, r * surface)
+        of_mesh = _change(found, companion)
+        change = BY_CONDITIONS * of_mesh
         change[1] = max(change[1], chosen.STIFF * slender * (size / default[0]) ** 4 * numbers[1])
-        cut = chosen.OF_FIELDS * np.abs(numbers - _numbers(lower.found))
-        cut[0] = chosen.OF_FIELDS * found.moved(lower.found) * numbers[0]
+        to_richer = ((_change(found, one), _change(one, on_companion)) for one, on_companion in richer)
+        cut = by_degree(_change(found, lower.found), of_mesh, to_richer)
         left = np.maximum(found.residual, chosen.OF_FIELDS * found.errors) * np.abs(numbers)
         names = ("contact_radius", "approach", "peak_pressure")
         parts = (("element size", change), ("degree of the pressure", cut), ("gap left", left))
@@ -359,6 +360,13 @@ def _typical(solid: PressedSolid) -> float:
     x, y, z = solid._units.length * np.array([r * np.cos(np.pi * turn), r * np.sin(np.pi * turn), 0.1 + z])
     _, U = solid.sample(ElementPoints(x, y, z), "stress")
     return float(np.percentile(U[0, 0], chosen.TYPICAL))
+
+
+def _change(one: Closed, other: Closed) -> np.ndarray:
+    """Changes of the numbers; in that of the area parts of the edge do not make up for each other."""
+    change = np.abs(_numbers(one) - _numbers(other))
+    change[0] = one.moved(other) * _numbers(one)[0]
+    return np.asarray(change)
 
 
 def _numbers(found: Closed) -> np.ndarray:

@@ -1,7 +1,9 @@
 """Uncertainty of a star-shaped pressure, and of the stress by it, in scaled units."""
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import RegularGridInterpolator
@@ -12,18 +14,42 @@ from fem_reference.not_round.gap_closing import BY_CONDITIONS
 from fem_reference.not_round.star_contact import StarPressure
 
 
-def uncertain_by(fine: np.ndarray, companion: np.ndarray, lower: np.ndarray) -> np.ndarray:
-    """Uncertainty by the change from the companion and that from a lower degree."""
-    return np.asarray(BY_CONDITIONS * np.abs(fine - companion) + chosen.OF_FIELDS * np.abs(fine - lower))
+def by_degree(lower: Any, companion: Any, beyond: Iterable[tuple[Any, Any]]) -> np.ndarray:
+    """Uncertainty by the degree, from the changes to the ``lower`` one and to richer ones ``beyond``.
+
+    companion, second of each ``beyond`` : the changes of either degree to its companion. A richer degree
+    follows the mesh more closely: what those explain is left out.
+    """
+    unexplained = (change - own - companion for change, own in beyond)
+    return np.asarray(chosen.OF_FIELDS * np.maximum.reduce([lower, *unexplained]))
 
 
 @dataclass(frozen=True, eq=False)
 class StarEstimate:
-    """Uncertainty of ``fine``, by its companion of the same degree on a coarser mesh and a lower degree."""
+    """Uncertainty of a pressure on two meshes, by other degrees; each on the mesh and on its companion.
+
+    lower : the next lower degree on the mesh.   beyond : richer ones
+    """
 
     fine: StarPressure
     companion: StarPressure
     lower: StarPressure
+    beyond: tuple[tuple[StarPressure, StarPressure], ...] = ()
+
+    def of_values(
+        self,
+        at: Callable[[StarPressure], np.ndarray],
+        largest: Callable[[np.ndarray], np.ndarray] = np.asarray,
+    ) -> np.ndarray:
+        """Uncertainty of what each pressure has ``at`` the same points or shares of the way to its edge.
+
+        largest : of changes around each point
+        """
+        fine, companion, lower = (at(one) for one in (self.fine, self.companion, self.lower))
+        of_mesh, to_lower = (largest(np.abs(fine - one)) for one in (companion, lower))
+        richer = [(at(one), at(on_companion)) for one, on_companion in self.beyond]
+        beyond = [(largest(np.abs(fine - one)), largest(np.abs(one - other))) for one, other in richer]
+        return BY_CONDITIONS * of_mesh + by_degree(to_lower, of_mesh, beyond)
 
     def of_pressure(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
         """Uncertainty of the pressure at points as far from the edge as x, y; 0 outside."""
@@ -55,21 +81,24 @@ class StarEstimate:
 
     @cached_property
     def _changes(self) -> tuple[RegularGridInterpolator, RegularGridInterpolator]:
-        """Largest change near w, tau by the companion and the lower degree; the largest from w = 0 to w.
+        """Largest change near w, tau by the companion and other degrees; the largest from w = 0 to w.
 
         All at the same w, the share of the way to the own edge. A change at one point may be small by chance:
         within one wave of the polynomial around the contact, and next to w, the largest counts; nearer to the
         edge than its last wave, where no condition holds the pressure, the largest of all there.
         """
         w, turn = 1 - np.geomspace(1, 1e-4, 60), np.linspace(0, np.pi, 97)
-        pressures = self.fine, self.companion, self.lower
-        change = uncertain_by(*(one(*one.points(w[:, None], turn)) for one in pressures))
         wave = 2 * round(turn.size / self.fine.degree) + 1
-        largest = maximum_filter(change, (5, wave), mode=("nearest", "mirror"))
         last = w > 1 - self._last_wave
-        largest[last] = largest[last].max()
+
+        def largest(change: np.ndarray) -> np.ndarray:
+            near = maximum_filter(change, (5, wave), mode=("nearest", "mirror"))
+            near[last] = near[last].max()
+            return np.asarray(near)
+
+        found = self.of_values(lambda one: one(*one.points(w[:, None], turn)), largest)
         here, inwards = (
             RegularGridInterpolator((np.append(w, 1.0), turn), np.vstack([one, one[-1:]]))
-            for one in (largest, np.maximum.accumulate(largest))
+            for one in (found, np.maximum.accumulate(found))
         )
         return here, inwards

@@ -72,10 +72,10 @@ class OfDegree:
 
 
 @pytest.mark.parametrize(
-    ("errors", "resting", "best"),
-    [((4, 3, 2, 1), 14, 14), ((4, 1, 2, 3, 0.5), 16, 10), ((4, 3, 2, 1), 10, 10)],
+    ("errors", "resting", "best", "others"),
+    [((4, 3, 2, 1), 14, 14, [12]), ((4, 1, 2, 3, 0.5), 16, 10, [8, 12, 14]), ((4, 3, 2, 1), 10, 10, [8])],
     ids=["richer is better", "richer is worse", "a richer one is not at rest"],
 )
-def test_a_pressure_is_as_rich_as_helps_and_rests(errors, resting, best):
-    chosen, lower = as_rich_as_helps(OfDegree(8, errors, resting), 8 + 2 * (len(errors) - 1))
-    assert (chosen.degree, lower.degree) == (best, best - 2)
+def test_a_pressure_is_as_rich_as_helps_and_rests(errors, resting, best, others):
+    chosen, beside = as_rich_as_helps(OfDegree(8, errors, resting), 8 + 2 * (len(errors) - 1))
+    assert (chosen.degree, [one.degree for one in beside]) == (best, others)

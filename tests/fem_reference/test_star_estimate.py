@@ -23,6 +23,19 @@ def test_a_pressure_is_uncertain_by_the_change_from_the_lower_degree():
     assert FOUND.of_pressure(np.array([1.01]), ZERO) == 0
 
 
+def test_a_lower_degree_that_agrees_by_chance_does_not_hide_what_a_richer_one_changes():
+    x = np.linspace(0.0, 0.99, 7)
+    both = StarEstimate(FINE, FINE, FINE, ((WEAKER, WEAKER),))
+    assert both.of_pressure(x, 0 * x) == pytest.approx(FOUND.of_pressure(x, 0 * x))
+
+
+def test_a_richer_degree_tells_nothing_that_the_meshes_explain():
+    by_its_own = StarEstimate(FINE, FINE, FINE, ((WEAKER, FINE),))
+    assert by_its_own.of_pressure(ZERO, ZERO) == 0
+    by_both = StarEstimate(FINE, WEAKER, FINE, ((WEAKER, WEAKER),))
+    assert by_both.of_pressure(ZERO, ZERO) == StarEstimate(FINE, WEAKER, FINE).of_pressure(ZERO, ZERO)
+
+
 def test_the_stress_at_the_edge_is_as_uncertain_as_the_pressure_inside():
     at_edge = FOUND.of_stress(np.array([1.0]), ZERO, ZERO)
     assert at_edge >= 0.999 * FOUND.of_pressure(ZERO, ZERO)
