@@ -13,24 +13,24 @@ from math import log
 import numpy as np
 
 from verification.cases.drawn_ranges import (
+    CLOSE_RATIO,
+    ELLIPSE_POISSON,
+    ELONGATION,
     FILM_RATIO,
     FILM_THICKNESS,
     FRICTION,
     MOST_COATINGS,
     MOST_FILMS,
+    OF_SHORT_AXIS,
     OVER_INTERLAYER,
     POISSON,
     RATIO,
+    SLIDING,
     THICKNESS,
     THINNEST,
 )
 
-# Of ellipses on one coating.
-ELONGATION = (1.5, 4.0)  # about the ratio of the axes; that of the radii to the power 1.5
-CLOSE_RATIO = (0.25, 4.0)  # E1/E2
-OF_SHORT_AXIS = (0.1, 2.0)  # h over the short half-axis
-ELLIPSE_POISSON = (0.1, 0.45)
-SLIDING = (0.0, 0.1, 0.3, 0.5)
+# Of ellipses.
 LARGE_RADIUS, LOAD, STEEL = 20e-3, 20.0, 210e9  # m, N, Pa
 ELASTIC = 0.5  # share of the problems with an elastic ball, of no coating to three
 FRICTIONLESS = 1 / 3  # share of the problems with f = 0, the only ones with a symmetric stress

@@ -11,3 +11,9 @@ FILM_RATIO = (0.1, 10.0)
 FILM_THICKNESS = (0.001, 0.02)  # h / a_h
 OVER_INTERLAYER = (0.001, 0.2)  # h / a_h of the outer of two
 MOST_FILMS = 2
+# Of ellipses on one coating, under bodies with none or one.
+ELONGATION = (1.5, 4.0)  # about the ratio of the axes; that of the radii to the power 1.5
+CLOSE_RATIO = (0.25, 4.0)  # E1/E2
+OF_SHORT_AXIS = (0.1, 2.0)  # h over the short half axis
+ELLIPSE_POISSON = (0.1, 0.45)
+SLIDING = (0.0, 0.1, 0.3, 0.5)

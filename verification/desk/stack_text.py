@@ -1,23 +1,29 @@
 """A contact in words: the stack in one line, each body and coating in a line of its own."""
 
+from dataclasses import dataclass
 from itertools import accumulate, pairwise, product
 
 from verification.cases.case_file import Case
 from verification.cases.drawn_ranges import (
+    CLOSE_RATIO,
+    ELLIPSE_POISSON,
     FILM_RATIO,
     FILM_THICKNESS,
     FRICTION,
     MOST_COATINGS,
     MOST_FILMS,
+    OF_SHORT_AXIS,
     OVER_INTERLAYER,
     POISSON,
     RATIO,
+    SLIDING,
     THICKNESS,
 )
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.display_units import Units, prefixed, radii_text
 from verification.problem.point_answers import BALL, FLAT
 from verification.sources.load_of_approach import own_radius
+from verification.sources.references.hertz_ellipse import pressed_ellipsoid
 
 FILMS = (FILM_THICKNESS[0], OVER_INTERLAYER[1])
 
@@ -114,35 +120,74 @@ def body_label(problem: CoatedContact, body: str, where: str) -> str:
     return body if not problem.seen_from(body).coatings and where == "substrate" else f"{body}, {where}"
 
 
+@dataclass(frozen=True)
+class _Ranges:
+    """Of the random problems of a kind; thicknesses over any of ``lengths`` [m], the first named ``unit``."""
+
+    lengths: tuple[float, ...]
+    unit: str
+    thickness: tuple[float, float]
+    ratio: tuple[float, float]
+    on_ball: tuple[float, float]
+    poisson: tuple[float, float] = POISSON
+    friction: float = FRICTION[1]
+    coatings: int = MOST_COATINGS
+
+    @classmethod
+    def of(cls, problem: CoatedContact) -> "_Ranges":
+        if problem.indenter is not None and problem.elliptical:
+            (R_x, R_y), ball = problem.indenter[1], problem.ball and problem.ball[:2]
+            bare = pressed_ellipsoid(R_x, R_y, problem.load, *problem.substrate, ball)
+            drawn = problem.a_h * (min(R_x, R_y) / max(R_x, R_y)) ** (1 / 3)  # about as long
+            lengths, both = (
+                (bare.b, drawn),
+                (CLOSE_RATIO[0] / CLOSE_RATIO[1], CLOSE_RATIO[1] / CLOSE_RATIO[0]),
+            )
+            return cls(
+                lengths,
+                "of the short half axis",
+                OF_SHORT_AXIS,
+                CLOSE_RATIO,
+                both,
+                ELLIPSE_POISSON,
+                SLIDING[-1],
+                1,
+            )
+        lengths = own_radius(problem), problem.a_h
+        # a film as thin as those of the random problems of films, alone or below another
+        thin = any(h < THICKNESS[0] * problem.a_h for *_, h in problem.coatings)
+        films = thin and len(problem.coatings) <= MOST_FILMS and not (problem.ball and problem.ball[2])
+        thickness, ratio = (FILMS, FILM_RATIO) if films else (THICKNESS, RATIO)
+        return cls(lengths, "a", thickness, ratio, ratio)
+
+
 def outside_verified(case: Case) -> str:
     """Names of the inputs outside the ranges of the random problems of both methods; "" for none.
 
     Their thicknesses are over a_h of the bare bodies; on a film of another modulus the contact's own radius a
-    counts too.
+    counts too. Those under an ellipse are over its short half axis b between the bare bodies.
     """
     problem, found = case.problem, []
-    if problem.friction > FRICTION[1]:
-        found.append((f"friction f = {problem.friction:g}", f"outside {_between(FRICTION)}"))
-    a = own_radius(problem)
-    # a film as thin as those of the random problems of films, alone or below another
-    thin = any(h < THICKNESS[0] * problem.a_h for *_, h in problem.coatings)
-    films = thin and len(problem.coatings) <= MOST_FILMS and not (problem.ball and problem.ball[2])
+    ranges = _Ranges.of(problem)
+    if problem.friction > ranges.friction:
+        found.append((f"friction f = {problem.friction:g}", f"outside {_between((0, ranges.friction))}"))
     for body in problem.bodies:
         seen, of = problem.seen_from(body), "" if body == FLAT else f" on the {body}"
-        thickness, ratio = (FILMS, FILM_RATIO) if films else (THICKNESS, RATIO)
         coatings = _coatings(seen, case.layers.get(body))
-        if len(coatings) > MOST_COATINGS:
-            found.append((f"{len(coatings)} coatings{of}", f"outside {_between((0, MOST_COATINGS))}"))
+        if len(coatings) > ranges.coatings:
+            found.append((f"{len(coatings)} coatings{of}", f"outside {_between((0, ranges.coatings))}"))
         solids = [(f"coating {i}{of}", layers[0][1]) for i, layers in enumerate(coatings, start=1)]
         for name, nu in (*solids, ("substrate" if body == FLAT else body, seen.substrate[1])):
-            if not POISSON[0] <= nu <= POISSON[1]:
-                found.append((name, f"nu = {nu:g}, outside {_between(POISSON)}"))
+            if not ranges.poisson[0] <= nu <= ranges.poisson[1]:
+                found.append((name, f"nu = {nu:g}, outside {_between(ranges.poisson)}"))
         for i, layers in enumerate(coatings, start=1):
             h = sum(h for *_, h in layers)
-            low, high = thickness[0] * (1 - 1e-3), thickness[1] * (1 + 1e-3)
-            if not any(low <= h / radius <= high for radius in (a, problem.a_h)):
-                found.append((f"coating {i}{of}", f"h = {h / a:.2g} a, outside {_between(thickness)}"))
+            low, high = ranges.thickness[0] * (1 - 1e-3), ranges.thickness[1] * (1 + 1e-3)
+            if not any(low <= h / length <= high for length in ranges.lengths):
+                told = f"h = {h / ranges.lengths[0]:.2g} {ranges.unit}, outside {_between(ranges.thickness)}"
+                found.append((f"coating {i}{of}", told))
             ratios = [E / seen.substrate[0] for E, _, _ in layers]
+            ratio = ranges.ratio if body == FLAT else ranges.on_ball
             if not ratio[0] <= min(ratios) <= max(ratios) <= ratio[1]:
                 told = f"E = {ratios[0]:.2g} of the substrate's, outside {_between(ratio)}"
                 found.append((f"coating {i}{of}", told))

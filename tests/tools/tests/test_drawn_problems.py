@@ -1,5 +1,6 @@
 """Random problems: the same everywhere, valid, as wide as they are said to be."""
 
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -8,6 +9,7 @@ from synthetic_results import STEEL
 
 from verification.cases.case_file import Case, parse_case
 from verification.cases.drawn_ranges import FRICTION, MOST_COATINGS, POISSON, RATIO, THICKNESS, THINNEST
+from verification.desk.stack_text import outside_verified
 from verification.judging.standard_claims import standard_claims
 
 E, NU = STEEL
@@ -49,6 +51,14 @@ def test_ellipses_are_drawn_either_way_on_one_coating_and_compared_by_two_method
     elastic = [one.ball for one in problems if one.ball is not None]
     assert 35 < len(elastic) < 65
     assert {len(coatings) for _, _, coatings in elastic} == {0, 1}
+
+
+@pytest.mark.parametrize(
+    "kind", [draw, partial(draw, films=True), draw_ellipse], ids=["round", "films", "ellipses"]
+)
+def test_no_random_problem_is_beyond_the_range_in_which_the_methods_were_compared(kind):
+    cases = [parse_case(kind(7, k).text.encode(), Path("drawn.toml")) for k in range(60)]
+    assert {outside_verified(case) for case in cases} == {""}
 
 
 @pytest.mark.slow

@@ -126,6 +126,16 @@ def test_every_solid_beyond_the_range_of_the_comparisons_is_named():
     )
 
 
+def test_a_film_under_an_ellipse_is_thin_beside_its_short_half_axis():
+    case = parsed(case_text("E = 630e9; nu = 0.3; thickness = 2e-6", radius="9.8e-3"))
+    problem = replace(case.problem, radius=(20e-3 * 4.8e-3) ** 0.5, indenter=("ellipsoid", (20e-3, 4.8e-3)))
+    assert outside_verified(case) == ""
+    thin = outside_verified(replace(case, problem=problem))
+    assert re.fullmatch(r"coating 1, h = 0\.0\d+ of the short half axis, outside 0\.1 to 2", thin)
+    sliding = outside_verified(replace(case, problem=replace(problem, friction=0.6)))
+    assert sliding.startswith("friction f = 0.6, outside 0 to 0.5; coating 1")
+
+
 # The contact that was shown under 1000 N, an AFM tip, a small tip, a gel under a bead.
 SHOWN = [
     ("--ball '25 mm, 20 GPa, 0.3' --approach '4 mm' --substrate '20 GPa, 0.3'", "mm MPa kN"),
