@@ -122,7 +122,10 @@ def body_label(problem: CoatedContact, body: str, where: str) -> str:
 
 @dataclass(frozen=True)
 class _Ranges:
-    """Of the random problems of a kind; thicknesses over any of ``lengths`` [m], the first named ``unit``."""
+    """Ranges of the random problems of a kind.
+
+    thickness : over any of ``lengths`` [m], the first called ``unit``.   coatings : most on a body
+    """
 
     lengths: tuple[float, ...]
     unit: str
@@ -139,19 +142,16 @@ class _Ranges:
             (R_x, R_y), ball = problem.indenter[1], problem.ball and problem.ball[:2]
             bare = pressed_ellipsoid(R_x, R_y, problem.load, *problem.substrate, ball)
             drawn = problem.a_h * (min(R_x, R_y) / max(R_x, R_y)) ** (1 / 3)  # about as long
-            lengths, both = (
-                (bare.b, drawn),
-                (CLOSE_RATIO[0] / CLOSE_RATIO[1], CLOSE_RATIO[1] / CLOSE_RATIO[0]),
-            )
+            low, high = CLOSE_RATIO
             return cls(
-                lengths,
-                "of the short half axis",
-                OF_SHORT_AXIS,
-                CLOSE_RATIO,
-                both,
-                ELLIPSE_POISSON,
-                SLIDING[-1],
-                1,
+                lengths=(bare.b, drawn),
+                unit="of the short half axis",
+                thickness=OF_SHORT_AXIS,
+                ratio=CLOSE_RATIO,
+                on_ball=(low / high, high / low),
+                poisson=ELLIPSE_POISSON,
+                friction=SLIDING[-1],
+                coatings=1,
             )
         lengths = own_radius(problem), problem.a_h
         # a film as thin as those of the random problems of films, alone or below another
