@@ -10,7 +10,6 @@ Roache's grid convergence index of the finest for an order p, and the larger cou
 (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9, with his factor for an order that is not relied on).
 A last change that is small by chance does not make U small. With elements of order k, p = k + 1 for
 displacements, approach, stiffness, contact radius; p = k - 1, about the observed, for pressure and stress.
-
 A change of a field crosses zero along lines where no mesh is exact. Its largest value in the neighbourhood of
 a point, `RINGS` rings of triangles or cells of a line, takes its place. Meshes are compared at the same r/a.
 

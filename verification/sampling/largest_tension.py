@@ -66,13 +66,14 @@ class Search:
         """The largest tension from sigma_xx [Pa] at ``x``; its uncertainty counts at ``edges`` alone."""
         if not np.isfinite(value).all():
             return Tension(np.nan, np.nan, None if U is None else np.nan, None if U is None else np.nan)
-        a = float(self.solution.contact_radius)
+        a, U_a = float(self.solution.contact_radius), self.solution.sample(None, "contact_radius").uncertainty
+        moved = U_a or 0.0  # every candidate, as the edge does
         sizes = [*(t.size for _, t in self._branches), *(5 for _ in self._sides)]
         parts = np.split(np.arange(value.size), np.cumsum(sizes)[:-1])
         around = parts[len(self._branches) :]
         edges = [(float(value[at[0]]), side * a, at) for side, at in zip(self._sides, around, strict=True)]
         highest, place, at = max(edges, key=lambda edge: edge[0])
-        others = [(v, x) for v, x, _ in edges]
+        candidates = [(v, x, moved) for v, x, _ in edges]
         best = None
         for (side, t), branch in zip(self._branches, parts, strict=False):
             sample = value[branch]
@@ -80,7 +81,7 @@ class Search:
             i = 1 + int(np.argmax(np.where(local, sample[1:-1], -np.inf)))
             if local.any() and sample[i] + CLEAR * abs(sample[i]) > highest:
                 found = self._maximum(side, t[max(i - WINDOW, 0)], t[min(i + WINDOW, t.size - 1)])
-                others.append((found.value, found.place))
+                candidates.append((found.value, found.place, (found.place_uncertainty or 0.0) + moved))
                 if found.value > (highest if best is None else best.value):
                     best = found
         if best is None:
@@ -88,14 +89,12 @@ class Search:
                 return Tension(highest, place, None, None)
             change = followed(self.solution, lambda one: _tension(one, ENDS * one.contact_radius), before=1.0)
             wide = float(edge_uncertainty(value[at], U[at], change))
-            best = Tension(highest, place, wide, self.solution.sample(None, "contact_radius").uncertainty)
+            best = Tension(highest, place, wide, U_a)
         if best.uncertainty is None or best.place_uncertainty is None:
             return best
-        # Any other candidate as large within the uncertainty may be the place, which moves with the edge.
-        reach = [abs(x - best.place) for v, x in others if v >= best.value - 2 * best.uncertainty]
-        edge = self.solution.sample(None, "contact_radius").uncertainty or 0.0
-        moved = 0.0 if best.place == place else edge
-        wide = max([best.place_uncertainty + moved, *reach])
+        # The place may be that of any candidate as large within the uncertainty.
+        least = best.value - 2 * best.uncertainty
+        wide = max(abs(x - best.place) + own for v, x, own in candidates if not v < least)
         return Tension(best.value, best.place, best.uncertainty, wide)
 
     @property

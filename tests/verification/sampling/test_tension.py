@@ -109,17 +109,17 @@ def test_the_uncertainty_at_the_edge_is_beside_it_plus_what_no_change_of_the_rad
 
 
 class Waving(ByFunctions):
-    """A maximum of sigma_xx at x = -2 a, with waves on it that the companion has elsewhere."""
+    """A maximum of sigma_xx at x = -``middle`` a, with waves on it that the companion has elsewhere."""
 
     contact_radius, peak_pressure = 1e-4, 1e9
 
-    def __init__(self, phase=0.0, coarser=None):
-        self.phase, self.coarser = phase, coarser
+    def __init__(self, phase=0.0, coarser=None, middle=2.0):
+        self.phase, self.coarser, self.middle = phase, coarser, middle
 
     def stress(self, x, y, z, layer=None):
         r = np.abs(np.asarray(x)) / self.contact_radius
         sigma = np.zeros((3, 3, *r.shape))
-        sigma[0, 0] = 1e9 * (np.exp(-(((r - 2) / 0.4) ** 2)) + 1e-5 * np.cos(20 * r + self.phase))
+        sigma[0, 0] = 1e9 * (np.exp(-(((r - self.middle) / 0.4) ** 2)) + 1e-5 * np.cos(20 * r + self.phase))
         return sigma
 
     def error(self, points, quantity, value):
@@ -141,3 +141,10 @@ def test_place_of_a_smooth_maximum_is_the_least_uncertain_one_with_its_distance_
     assert apart > best.place_uncertainty
     assert found.place_uncertainty == pytest.approx(best.place_uncertainty + apart, rel=1e-9, abs=0)
     assert abs(found.place + 2 * solution.contact_radius) < found.place_uncertainty
+
+
+def test_place_may_be_the_edge_where_it_is_as_large_and_that_edge_is_uncertain():
+    solution = Waving(1.0, Waving(middle=1.02), middle=1.02)
+    found, a, U_a = largest(solution, contact()), solution.contact_radius, 1e-12
+    assert found.place < -a
+    assert abs(found.place + a) + U_a <= found.place_uncertainty < 1.1 * abs(found.place + a)
