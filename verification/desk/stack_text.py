@@ -7,6 +7,7 @@ from verification.cases.case_file import Case
 from verification.cases.drawn_ranges import (
     CLOSE_RATIO,
     ELLIPSE_POISSON,
+    ELONGATION,
     FILM_RATIO,
     FILM_THICKNESS,
     FRICTION,
@@ -125,6 +126,7 @@ class _Ranges:
     """Ranges of the random problems of a kind.
 
     thickness : over any of ``lengths`` [m], the first called ``unit``.   coatings : most on a body
+    elongation : of the contact, about, from the radii of the indenter
     """
 
     lengths: tuple[float, ...]
@@ -135,6 +137,7 @@ class _Ranges:
     poisson: tuple[float, float] = POISSON
     friction: float = FRICTION[1]
     coatings: int = MOST_COATINGS
+    elongation: float = 1.0
 
     @classmethod
     def of(cls, problem: CoatedContact) -> "_Ranges":
@@ -152,6 +155,7 @@ class _Ranges:
                 poisson=ELLIPSE_POISSON,
                 friction=SLIDING[-1],
                 coatings=1,
+                elongation=(max(R_x, R_y) / min(R_x, R_y)) ** (2 / 3),
             )
         lengths = own_radius(problem), problem.a_h
         # a film as thin as those of the random problems of films, alone or below another
@@ -171,6 +175,10 @@ def outside_verified(case: Case) -> str:
     ranges = _Ranges.of(problem)
     if problem.friction > ranges.friction:
         found.append((f"friction f = {problem.friction:g}", f"outside {_between((0, ranges.friction))}"))
+    coated = any(problem.seen_from(body).coatings for body in problem.bodies)
+    if coated and ranges.elongation > ELONGATION[1] * (1 + 1e-3):
+        told = f"outside {_between((1.0, ELONGATION[1]))}"
+        found.append((f"half axes about {ranges.elongation:.2g} to 1", told))
     for body in problem.bodies:
         seen, of = problem.seen_from(body), "" if body == FLAT else f" on the {body}"
         coatings = _coatings(seen, case.layers.get(body))

@@ -134,6 +134,10 @@ def test_a_film_under_an_ellipse_is_thin_beside_its_short_half_axis():
     assert re.fullmatch(r"coating 1, h = 0\.0\d+ of the short half axis, outside 0\.1 to 2", thin)
     sliding = outside_verified(replace(case, problem=replace(problem, friction=0.6)))
     assert sliding.startswith("friction f = 0.6, outside 0 to 0.5; coating 1")
+    slender = replace(problem, indenter=("ellipsoid", (40e-3, 2.4e-3)))
+    said = outside_verified(replace(case, problem=slender))
+    assert said.startswith("half axes about 6.5 to 1, outside 1 to 4; coating 1, h")
+    assert outside_verified(replace(case, problem=replace(slender, coatings=()))) == ""
 
 
 # The contact that was shown under 1000 N, an AFM tip, a small tip, a gel under a bead.
