@@ -185,11 +185,22 @@ def _at_sites(
         table = influence_table(influence, m, n, ())
         return _along_columns(table, sites[0] - m[0], force, columns, column, odd_in_y)
     n = np.arange(low[1] - (force.shape[1] - 1), high[1] + 1)
+    m, n = (some[np.abs(some) <= reach] if np.abs(some).min() <= reach else some[:1] for some in (m, n))
     table = influence_table(influence, m, n, odd_in_y, reach)
-    size = (next_fast_len(m.size, real=True), next_fast_len(n.size, real=True))
+    place = sites - np.array([m[:1], n[:1]])
+    rows, influenced = np.array(force.shape), np.array(table.shape[1:])
+    whole = rows + influenced - 1
+    felt = ((place >= 0) & (place < whole[:, None])).all(axis=0)
+    found = np.zeros((len(table), felt.size))
+    if not felt.any():
+        return found
+    i, j = at = place[:, felt]
+    # no longer than what leaves the wanted part of the convolution free of the rest
+    least = np.max([whole - at.min(axis=1), at.max(axis=1) + 1, rows, influenced], axis=0)
+    size = [next_fast_len(int(length), real=True) for length in least]
     spectrum = rfft2(force, size)
-    i, j = sites - low[:, None] + np.array(force.shape)[:, None] - 1
-    return np.array([irfft2(rfft2(part, size) * spectrum, size)[i, j] for part in table])
+    found[:, felt] = [irfft2(rfft2(part, size) * spectrum, size)[i, j] for part in table]
+    return found
 
 
 def _along_columns(

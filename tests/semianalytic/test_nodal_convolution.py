@@ -50,6 +50,24 @@ def test_field_on_sites_needs_no_interpolation(sites, columns):
     np.testing.assert_allclose(field, exact, rtol=0, atol=1e-12 * np.abs(exact).max())
 
 
+@pytest.mark.parametrize("reach", [0, 3, 8, 30])
+@pytest.mark.parametrize("sites", [(-60, 80), (5, 20), (40, 80)], ids=str)
+def test_forces_beyond_the_reach_count_for_nothing(sites, reach):
+    i, j = RNG.integers(*sites, (2, 60))
+    x, y = LATTICE.x0 + i * LATTICE.dx, LATTICE.y0 + j * LATTICE.dy
+
+    def influence(m, n):
+        return newton(m * LATTICE.dx, n * LATTICE.dy)
+
+    field = between_sites(x, y, LATTICE, influence, (1,), order=4, reach=reach)
+    p, q = np.meshgrid(*map(np.arange, LATTICE.force.shape), indexing="ij")
+    m, n = i[:, None, None] - p, j[:, None, None] - q
+    near = (np.abs(m) <= reach) & (np.abs(n) <= reach)
+    exact = (influence(m, n) * near * LATTICE.force).sum(axis=(2, 3))
+    np.testing.assert_allclose(field, exact, rtol=0, atol=1e-12)
+    assert not field[:, ~near.any(axis=(1, 2))].any()
+
+
 def test_on_the_axis_of_even_forces_what_is_odd_across_it_vanishes():
     even = Lattice(-0.7, -0.45, 0.1, 0.15, np.hstack([half := RNG.random((23, 4)), half[:, -2::-1]]))
     i = np.array([3, -2, 12])

@@ -19,6 +19,7 @@ from verification.problem.array_types import Array
 from verification.problem.gauss_legendre import gauss_legendre
 
 NEAR_AXIS = 0.1  # of a
+BESSELS = 16_000_000  # spherical Bessel functions held in memory at once
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,8 +99,9 @@ class AbelPressure:
 
     def transform(self, k: Array) -> Array:
         """phat(k) [N]: int_0^1 P_2n(s) cos(ks) ds = (-1)^n j_2n(k)."""
-        signed = self.c * (-1.0) ** np.arange(self.c.size)
-        return self.a * (signed @ _even_spherical_bessel(self.c.size, k * self.a))
+        signed = self.a * self.c * (-1.0) ** np.arange(self.c.size)
+        parts = np.array_split(k * self.a, max(1, k.size * self.c.size // BESSELS))
+        return np.concatenate([signed @ _even_spherical_bessel(self.c.size, part) for part in parts])
 
     def sink(self, r: Array) -> Array:
         """E* u_z [N/m] on the surface of the homogeneous solid, 2 int phat(k) J0(kr) dk; shape of ``r``."""

@@ -51,6 +51,7 @@ class Gap:
     widest: float
 
 
+BLOCK = 4096  # wavenumbers of the kernel summed at once
 PARABOLA = Gap(lambda x, R: x**2 / R, np.inf)
 SPHERE = Gap(lambda x, R: x * np.arctanh(x / R), 0.9)
 
@@ -187,14 +188,14 @@ def solve(
     solids = solids_of(coatings, substrate, ball)
     guess = radius_estimate(radius, load, combined_modulus(solids), solids)
 
-    def solved(nodes: int, panel: int, tail: float) -> ExactSolution:
+    def solved(nodes: int, panel: int, tail: float, start: float = guess) -> ExactSolution:
         equation = Equation(radius, solids, guess, nodes, panel, tail, gap, beyond)
-        return _under_load(equation, load, friction, panel, tail)
+        return _under_load(equation, load, friction, panel, tail, start)
 
-    fine = solved(nodes, panel, tail)
     if not estimate_uncertainty:
-        return fine
-    return replace(fine, coarser=solved(3 * nodes // 4, 3 * panel // 4, 0.75 * tail))
+        return solved(nodes, panel, tail)
+    coarser = solved(3 * nodes // 4, 3 * panel // 4, 0.75 * tail)
+    return replace(solved(nodes, panel, tail, start=coarser.contact_radius), coarser=coarser)
 
 
 class Equation:
@@ -220,37 +221,51 @@ class Equation:
         self.s, self.weight = 0.5 * (1 + x), 0.5 * w
         self.k, self.k_weight = kernel_wavenumbers(solids, guess, panel, tail)
         # wavenumbers go as 1/a, so that cos(kx) is that of every radius
-        self.cosine = np.cos(np.multiply.outer(self.k * guess, np.append(self.s, 1.0)))
-        self.at = cache(self._at)  # the root that is found was asked for before
+        phase = np.multiply.outer(self.k * guess, np.append(self.s, 1.0))
+        self.cosine = np.cos(phase, out=phase)
 
-    def _at(self, a: float) -> tuple[Array, float, float]:
+    def at(self, a: float) -> tuple[Array, float, float]:
         """phi at the nodes, approach, stiffness of contact radius ``a`` [m]."""
         x, shrink, unit = a * self.s, self.guess / a, self.E_star / np.pi
         kernel = shrink * self.k_weight * (compliance(self.solids, self.E_star, shrink * self.k) - 1)
-        K = (2 / np.pi) * (self.cosine.T * kernel) @ self.cosine
+        K = (2 / np.pi) * self._transformed(kernel)
         if self.beyond is not None:
             K += unit * self.beyond(np.append(x, a))
         A = np.eye(x.size) + K[:-1, :-1] * (a * self.weight)
         right = unit * np.stack([np.ones_like(x), self.gap.transform(x, self.radius)], axis=1)
-        phi = np.linalg.solve(A, right)
+        phi: Any = np.linalg.solve(A, right)
         at_edge = float(self.gap.transform(a, self.radius))
         # Nystrom's interpolation gives phi at the edge, where it must vanish.
         edge = unit * np.array([1.0, at_edge]) - (K[-1, :-1] * a * self.weight) @ phi
         delta = edge[1] / edge[0]
         return phi @ np.array([delta, -1.0]), float(delta), self.carried(a, phi[:, 0])
 
+    def _transformed(self, kernel: Array) -> Array:
+        """int kernel(k) cos(ks) cos(kt) dk; A^T A of each sign of the kernel is half of a product's work."""
+        found = np.zeros(2 * self.cosine.shape[1:])
+        for begin in range(0, kernel.size, BLOCK):
+            part = kernel[begin : begin + BLOCK, None]
+            root = np.sqrt(np.abs(part)) * self.cosine[begin : begin + BLOCK]
+            for sign in (1, -1):
+                of_sign = root[sign * part[:, 0] > 0]
+                found += sign * (of_sign.T @ of_sign)
+        return found
+
     def carried(self, a: float, phi: Array) -> float:
         """2 pi int_0^a phi dt [N]."""
         return float(2 * np.pi * a * (self.weight @ phi))
 
 
-def _under_load(equation: Equation, load: float, friction: float, panel: int, tail: float) -> ExactSolution:
-    """The contact whose radius carries ``load``."""
+def _under_load(
+    equation: Equation, load: float, friction: float, panel: int, tail: float, start: float
+) -> ExactSolution:
+    """The contact whose radius carries ``load``, sought from ``start`` [m]."""
     guess, gap, radius = equation.guess, equation.gap, equation.radius
+    at = cache(equation.at)  # the root that is found was asked for before
 
     def excess(log_a: float) -> float:
         a = float(np.exp(log_a))
-        carried = equation.carried(a, equation.at(a)[0])
+        carried = equation.carried(a, at(a)[0])
         if not carried > 0:
             raise ValueError(
                 f"{load:g} N on a = {a:g} m: the layers' compliance loses its digits; check the moduli"
@@ -258,7 +273,7 @@ def _under_load(equation: Equation, load: float, friction: float, panel: int, ta
         return float(np.log(carried / load))
 
     widest = np.log(gap.widest * radius)
-    low = high = min(np.log(guess), widest)
+    low = high = min(np.log(start), widest)
     span = min(0.6 * abs(excess(low)) + 1e-9, np.log(1.5))  # the load goes about as a^3
     while excess(low) > 0 and low > np.log(guess) - 7:
         low, span = low - span, 1.5 * span
@@ -269,7 +284,7 @@ def _under_load(equation: Equation, load: float, friction: float, panel: int, ta
             f"load = {load:g} N is carried by no contact radius near {guess:g} m; check the moduli"
         )
     a = float(np.exp(brentq(excess, low, high, xtol=1e-15, rtol=1e-14)))
-    phi, delta, stiffness = equation.at(a)
+    phi, delta, stiffness = at(a)
     abel = AbelPressure.from_nodes(a, equation.s, equation.weight, phi)
     # the traction on the ball is -q
     fields = tuple(
