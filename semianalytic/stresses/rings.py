@@ -202,10 +202,14 @@ class SmoothContour:
             flat = np.abs(bend) < 1e-6 * here
             step = np.where(flat, 0.0, -slope / np.where(flat, 1.0, bend))
             angle = angle + np.clip(step, -np.pi / numbers.AROUND, np.pi / numbers.AROUND)
-        # where two extrema are about to arise, the harmonics change as fast as beside one
+        # where two extrema are about to arise, or have just gone, the harmonics change as fast as beside one
         bend = after - 2 * sampled + before
-        point_of_arising, k = np.nonzero(bend * np.roll(bend, -1, axis=1) < 0)
-        share = bend[point_of_arising, k] / (bend - np.roll(bend, -1, axis=1))[point_of_arising, k]
+        inflected, size = bend * np.roll(bend, -1, axis=1) < 0, np.abs(bend)
+        flattest = (size < np.roll(size, 1, axis=1)) & (size <= np.roll(size, -1, axis=1))
+        flattest &= ~(inflected | np.roll(inflected, 1, axis=1))
+        point_of_arising, k = np.nonzero(inflected | flattest)
+        crossing, share = inflected[point_of_arising, k], np.zeros(k.size)
+        share[crossing] = bend[inflected] / (bend - np.roll(bend, -1, axis=1))[inflected]
         distance = np.sqrt(
             np.concatenate(
                 [square(point, angle), square(point_of_arising, 2 * np.pi * (k + share) / numbers.AROUND)]

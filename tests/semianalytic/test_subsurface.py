@@ -97,6 +97,18 @@ def test_stress_below_the_centre_of_an_ellipse_is_johnsons(ratio):
         np.testing.assert_allclose(found, exact, rtol=0, atol=RINGS)
 
 
+@pytest.mark.parametrize("ratio", [1.3, 1.6, 2.5])
+def test_an_ellipse_sinks_in_by_a_paraboloid_at_the_centres_of_curvature_of_its_pointed_ends_too(ratio):
+    a, b = ratio**0.5, ratio**-0.5
+    centre = (a**2 - b**2) / a  # around it a ring touches the edge along an arc, not in points
+    x, y = centre + np.random.default_rng(1).uniform(-0.1, 0.1, 300), np.linspace(-0.15, 0.15, 300) * b
+    x, y = (v[(x / a) ** 2 + (y / b) ** 2 < 1] for v in (x, y))
+    w = displacement(x, y, 0.0, pressure=rings_of(ellipse(a, b)), body=BARE.with_friction(0.0))[2]
+    paraboloid = np.stack([np.ones_like(x), x**2, y**2], axis=1)
+    left = w - paraboloid @ np.linalg.lstsq(paraboloid, w)[0]
+    np.testing.assert_allclose(left, 0, rtol=0, atol=6e-7)
+
+
 def point_stress(x, y, z):
     """Of a normal force 1 with a tangential one F, (6, n)."""
     r = np.hypot(x, y)
