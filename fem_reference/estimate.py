@@ -119,7 +119,7 @@ class StressEstimate(Uncached):
         """Vertices and uncertainties on the surface and both sides of each interface, by (depth, layer)."""
         d, found = self.fields[0].discretisation, {}
         for key, (vertices, points) in self.points.planes.items():
-            changes = largest_around(self._changes(points, key[1])[:, :6])
+            changes = self.points.largest_on_plane(self._changes(points, key[1])[:, :6])
             found[key] = vertices, from_changes(changes, d.order - 1)
         for upper, depth in enumerate(d.mesh.depths):
             above, below = (found[float(depth), layer][1] for layer in (upper, upper + 1))

@@ -308,6 +308,7 @@ def solve_shape(
         to_richer = ((_change(found, one), _change(one, on_companion)) for one, on_companion in richer)
         cut = by_degree(_change(found, lower.found), of_mesh, to_richer)
         left = np.maximum(found.residual, chosen.OF_FIELDS * found.errors) * np.abs(numbers)
+        left[1] = max(left[1], abs(found.missed))
         names = ("contact_radius", "approach", "peak_pressure")
         parts = (("element size", change), ("degree of the pressure", cut), ("gap left", left))
         budget = tuple(
@@ -372,4 +373,4 @@ def _change(one: Closed, other: Closed) -> np.ndarray:
 def _numbers(found: Closed) -> np.ndarray:
     """Contact radius, approach, peak pressure, extents; scaled."""
     p = found.pressure
-    return np.array([np.sqrt(p.area / np.pi), found.approach, p.peak, *p.extents])
+    return np.array([np.sqrt(p.area / np.pi), found.approach + found.missed, p.peak, *p.extents])

@@ -171,6 +171,12 @@ def _stencil(s: Array, order: int) -> tuple[Array, Array]:
     return first[:, None] + np.arange(order), weights
 
 
+def _within(offsets: Array, reach: float) -> Array:
+    """Those of the ``offsets`` within ``reach``, or the first, which has no influence."""
+    near = offsets[np.abs(offsets) <= reach]
+    return near if near.size else offsets[:1]
+
+
 def _at_sites(
     sites: Array, lattice: Lattice, influence: Influence, odd_in_y: Sequence[int], reach: float
 ) -> Array:
@@ -180,12 +186,12 @@ def _at_sites(
     low, high = sites.min(axis=1), sites.max(axis=1)
     m = np.arange(low[0] - (force.shape[0] - 1), high[0] + 1)
     if columns.size <= numbers.COLUMNS:
-        m = m[np.abs(m) <= reach] if np.abs(m).min() <= reach else m[:1]
+        m = _within(m, reach)
         n = np.arange(1 + int(min(np.abs(columns[:, None] - [0, force.shape[1] - 1]).max(), reach)))
         table = influence_table(influence, m, n, ())
         return _along_columns(table, sites[0] - m[0], force, columns, column, odd_in_y)
     n = np.arange(low[1] - (force.shape[1] - 1), high[1] + 1)
-    m, n = (some[np.abs(some) <= reach] if np.abs(some).min() <= reach else some[:1] for some in (m, n))
+    m, n = _within(m, reach), _within(n, reach)
     table = influence_table(influence, m, n, odd_in_y, reach)
     place = sites - np.array([m[:1], n[:1]])
     rows, influenced = np.array(force.shape), np.array(table.shape[1:])

@@ -84,6 +84,23 @@ def test_uncertainty_of_the_displacement_is_that_of_its_direction():
     assert U(np.array([r]), np.array([r]), np.zeros(1))[0] > 0.7 * across[0]
 
 
+def test_stresses_that_are_one_on_the_axis_are_equally_uncertain():
+    """As along and across there; the change of either between the meshes may vanish alone."""
+    s = solved("sphere")
+    for layer, depths in enumerate(([0.0, 0.1, 0.5], [0.5, 0.8, 1.7])):
+        at = Points(np.zeros(3), np.zeros(3), A * np.array(depths), layer)
+        stress, U = s.sample(at, "stress")
+        np.testing.assert_allclose(stress[0, 0], stress[1, 1], rtol=1e-6)
+        np.testing.assert_allclose(U[0, 0], U[1, 1], rtol=1e-9)
+    # the larger of both counts
+    corners = s.estimates[0].normal.points
+    values = np.zeros((2, 9, corners.triangles[0].r.size))
+    values[:, 0], values[:, 1] = 1.0, 3.0
+    near = corners.largest_at_corners(values)[0, :2]
+    assert near[1].min() == near[1].max() == near[0].max() == 3.0
+    assert near[0].min() == 1.0
+
+
 def test_stress_of_the_far_boundary_bounds_that_of_any_strain_of_its_size():
     state = solved("sphere").state
     missing, stress, _ = state.truncation(0)

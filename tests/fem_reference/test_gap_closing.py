@@ -8,7 +8,10 @@ import pytest
 
 from fem_reference import ElementsNotConverged, solve_shape
 from fem_reference.not_round.gap_closing import Closed, as_rich_as_helps
+from fem_reference.not_round.harmonic_compliance import harmonic_compliance
+from fem_reference.not_round.off_axis import discretised
 from fem_reference.not_round.star_contact import StarPressure
+from fem_reference.scaling import LayeredSolid
 from verification.sources.references.hertz_ellipse import pressed_ellipsoid
 
 STEEL, RADII, LOAD = (210e9, 0.3), (16e-3, 6e-3), 20.0
@@ -31,6 +34,20 @@ def test_of_two_equal_bodies_one_is_the_mirror_image_of_the_other():
     mirror = np.array([[1, -1, -1], [-1, 1, 1], [-1, 1, 1]])
     on_ball, on_flat = found.stress(x, 0.0, z, body="ball"), found.stress(-x, 0.0, z)
     np.testing.assert_allclose(on_ball, mirror * on_flat, rtol=0, atol=1e-12 * exact.peak_pressure)
+
+
+@pytest.mark.parametrize("wider", [-0.04, 0.04])
+def test_an_approach_is_found_in_spite_of_a_wrong_contour(wider):
+    """Hertz's contact by a pressure of the same load on an ellipse of another size, at no approach."""
+    exact = pressed_ellipsoid(*RADII, LOAD, *STEEL)
+    L, load = 1.2 * max(exact.axes), LOAD / (STEEL[0] * (1.2 * max(exact.axes)) ** 2)
+    solid = LayeredSolid.scaled((), STEEL, L, 100.0, STEEL[0])
+    compliance = harmonic_compliance(solid, discretised(solid, 0.4, 0.1, 4), 24, 2)
+    axes = tuple((1 + wider) * one / L for one in exact.axes)
+    pressure = StarPressure.of_ellipse(0.0, axes, load, 2, 4)
+    asked = (lambda x, y: L / 2 * (x**2 / RADII[0] + y**2 / RADII[1]), load, 24)
+    wrong = Closed((compliance,), pressure, 0.0, 0, True, np.zeros((0, 0)), asked)
+    assert L * wrong.missed == pytest.approx(exact.approach, rel=2 * wider**2)
 
 
 def test_a_ball_without_a_modulus_is_refused():

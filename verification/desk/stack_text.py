@@ -126,7 +126,6 @@ class _Ranges:
     """Ranges of the random problems of a kind.
 
     thickness : over any of ``lengths`` [m], the first called ``unit``.   coatings : most on a body
-    elongation : of the contact, about, from the radii of the indenter
     """
 
     lengths: tuple[float, ...]
@@ -137,7 +136,6 @@ class _Ranges:
     poisson: tuple[float, float] = POISSON
     friction: float = FRICTION[1]
     coatings: int = MOST_COATINGS
-    elongation: float = 1.0
 
     @classmethod
     def of(cls, problem: CoatedContact) -> "_Ranges":
@@ -155,7 +153,6 @@ class _Ranges:
                 poisson=ELLIPSE_POISSON,
                 friction=SLIDING[-1],
                 coatings=1,
-                elongation=(max(R_x, R_y) / min(R_x, R_y)) ** (2 / 3),
             )
         lengths = own_radius(problem), problem.a_h
         # a film as thin as those of the random problems of films, alone or below another
@@ -163,6 +160,14 @@ class _Ranges:
         films = thin and len(problem.coatings) <= MOST_FILMS and not (problem.ball and problem.ball[2])
         thickness, ratio = (FILMS, FILM_RATIO) if films else (THICKNESS, RATIO)
         return cls(lengths, "a", thickness, ratio, ratio)
+
+
+def _elongation(problem: CoatedContact) -> float:
+    """Of the contact, about, from the radii of an ellipsoid; 1 of other indenters."""
+    if problem.indenter is None or not problem.elliptical:
+        return 1.0
+    R_x, R_y = problem.indenter[1]
+    return float((max(R_x, R_y) / min(R_x, R_y)) ** (2 / 3))
 
 
 def outside_verified(case: Case) -> str:
@@ -176,9 +181,9 @@ def outside_verified(case: Case) -> str:
     if problem.friction > ranges.friction:
         found.append((f"friction f = {problem.friction:g}", f"outside {_between((0, ranges.friction))}"))
     coated = any(problem.seen_from(body).coatings for body in problem.bodies)
-    if coated and ranges.elongation > ELONGATION[1] * (1 + 1e-3):
+    if coated and _elongation(problem) > ELONGATION[1] * (1 + 1e-3):
         told = f"outside {_between((1.0, ELONGATION[1]))}"
-        found.append((f"half axes about {ranges.elongation:.2g} to 1", told))
+        found.append((f"half axes about {_elongation(problem):.2g} to 1", told))
     for body in problem.bodies:
         seen, of = problem.seen_from(body), "" if body == FLAT else f" on the {body}"
         coatings = _coatings(seen, case.layers.get(body))

@@ -283,7 +283,7 @@ def _under_load(
         raise ValueError(
             f"load = {load:g} N is carried by no contact radius near {guess:g} m; check the moduli"
         )
-    a = float(np.exp(brentq(excess, low, high, xtol=1e-15, rtol=1e-14)))
+    a = float(np.exp(brentq(excess, low, high, xtol=1e-15, rtol=4 * np.finfo(float).eps)))
     phi, delta, stiffness = at(a)
     abel = AbelPressure.from_nodes(a, equation.s, equation.weight, phi)
     # the traction on the ball is -q
