@@ -16,9 +16,6 @@ from fem_reference.meshing.location import LocatedPoints, Uncached
 # Those of triangles are moved towards the centre in depth: none lies on a plane with a formula of its own,
 # nor at a vertex of a plane, where two cells have two stresses.
 _CELL = np.linspace(chosen.EDGE_SIZE, 1 - chosen.EDGE_SIZE, 7)
-# Rows of stress and displacement whose amplitudes are of one magnitude on the axis: rr and tt where the
-# harmonic is 0; rz and tz, u_r and u_theta where it is 1.
-_ONE_ON_AXIS = ([0, 1], [3, 5], [6, 7])
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +65,10 @@ class ComparisonPoints(Uncached):
 
     @staticmethod
     def largest_on_plane(values: np.ndarray) -> np.ndarray:
-        """The same as ``largest_around``, of fields (meshes, rows, n) on a plane that begins on the axis."""
+        """The largest of ``values`` around each vertex of a plane that begins on the axis.
+
+        values : (meshes, rows, n) at ``samples``
+        """
         largest = largest_around(values)
         return one_on_axis(largest, np.arange(largest.shape[-1]) <= chosen.RINGS)
 
@@ -82,7 +82,7 @@ class ComparisonPoints(Uncached):
         return one_on_axis(self._around_corners(values), self._around_corners(on_axis)[0] > 0)
 
     def _around_corners(self, values: np.ndarray) -> np.ndarray:
-        """The same of any ``values``, (..., n)."""
+        """The largest of ``values`` (..., n) around each corner, of any rows."""
         mesh, triangulation = self.meshes[0].mesh, self.meshes[0].triangulation
         vertices = triangulation.t + mesh.layer * mesh.points.shape[1]  # those of each layer apart
         worst = values.reshape(-1, values.shape[-1] // vertices.shape[1], vertices.shape[1]).max(axis=1)
@@ -98,10 +98,13 @@ class ComparisonPoints(Uncached):
 def one_on_axis(largest: np.ndarray, near: np.ndarray) -> np.ndarray:
     """The ``largest`` changes, one for both of each two components that are one ``near`` the axis.
 
-    largest : (meshes, rows) + points. There both have the same error, but the change of one may cross zero.
+    There both have the same error, but the change of one may cross zero. rr and tt are one where the harmonic
+    is 0; rz and tz, u_r and u_theta where it is 1.
+
+    largest : (meshes, rows) + points, rows of the stress, then of the displacement if it is there
     """
     shared = largest.copy()
-    for pair in _ONE_ON_AXIS[: largest.shape[1] // 3]:
+    for pair in ([0, 1], [3, 5], [6, 7])[: largest.shape[1] // 3]:
         shared[:, pair] = np.where(near, largest[:, pair].max(axis=1, keepdims=True), largest[:, pair])
     return shared
 

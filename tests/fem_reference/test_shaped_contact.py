@@ -5,7 +5,7 @@ import pytest
 
 import semianalytic
 from fem_reference import ElementsNotConverged, solve_shape
-from fem_reference.not_round.harmonic_compliance import HarmonicCompliance
+from fem_reference.not_round.harmonic_compliance import HarmonicCompliance, Meridian
 from fem_reference.not_round.indenter_height import touching_shape
 from verification.problem.coated_contact import CoatedContact
 from verification.problem.indenter_shape import height_of
@@ -67,14 +67,25 @@ def test_the_start_is_forgotten(indenter):
 
 def test_an_error_of_the_matrix_moves_the_contact(monkeypatch):
     """A matrix 1e-3 too large is a modulus as much too small: p0 ~ E*^(2/3), approach ~ E*^(-2/3)."""
-    right, exact = solved(estimate_uncertainty=True), HarmonicCompliance.matrices
-    monkeypatch.setattr(HarmonicCompliance, "matrices", lambda *of: 1.001 * exact(*of))
+    right, exact = solved(estimate_uncertainty=True), Meridian.compliance.fget
+    monkeypatch.setattr(Meridian, "compliance", property(lambda one: 1.001 * exact(one)))
     wrong = solved()
     assert wrong.peak_pressure / right.peak_pressure == pytest.approx(1.001 ** (-2 / 3), abs=2e-5)
     assert wrong.approach / right.approach == pytest.approx(1.001 ** (2 / 3), abs=2e-5)
     for name, closed in (("peak_pressure", EXACT.peak_pressure), ("approach", EXACT.approach)):
         value, U = right.sample(None, name)
         assert abs(value - closed) <= U < abs(wrong.sample(None, name).value - closed), name
+
+
+def test_an_error_of_the_conditions_alone_is_seen_in_the_gap(monkeypatch):
+    """They close the gap of another solid; the approach by the gap is right, and as uncertain as that."""
+    right, exact = solved(), HarmonicCompliance.matrices
+    monkeypatch.setattr(HarmonicCompliance, "matrices", lambda *of: 1.001 * exact(*of))
+    wrong = solved(estimate_uncertainty=True)
+    assert wrong.peak_pressure / right.peak_pressure == pytest.approx(1.001 ** (-2 / 3), abs=2e-5)
+    approach, U = wrong.sample(None, "approach")
+    assert approach == pytest.approx(EXACT.approach, rel=2e-5)
+    assert (1.001 ** (2 / 3) - 1) * approach < U
 
 
 @pytest.mark.slow

@@ -163,7 +163,7 @@ class _Ranges:
 
 
 def _elongation(problem: CoatedContact) -> float:
-    """Of the contact, about, from the radii of an ellipsoid; 1 of other indenters."""
+    """Length over width of a contact, about, from the radii of an ellipsoid; 1 below other indenters."""
     if problem.indenter is None or not problem.elliptical:
         return 1.0
     R_x, R_y = problem.indenter[1]
