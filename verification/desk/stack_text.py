@@ -181,9 +181,9 @@ def outside_verified(case: Case) -> str:
     if problem.friction > ranges.friction:
         found.append((f"friction f = {problem.friction:g}", f"outside {_between((0, ranges.friction))}"))
     coated = any(problem.seen_from(body).coatings for body in problem.bodies)
-    if coated and _elongation(problem) > ELONGATION[1] * (1 + 1e-3):
+    if coated and (elongation := _elongation(problem)) > ELONGATION[1] * (1 + 1e-3):
         told = f"outside {_between((1.0, ELONGATION[1]))}"
-        found.append((f"half axes about {_elongation(problem):.2g} to 1", told))
+        found.append((f"half axes about {elongation:.2g} to 1", told))
     for body in problem.bodies:
         seen, of = problem.seen_from(body), "" if body == FLAT else f" on the {body}"
         coatings = _coatings(seen, case.layers.get(body))
