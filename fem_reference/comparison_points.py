@@ -63,14 +63,18 @@ class ComparisonPoints(Uncached):
             planes[depth, layer] = vertices, points
         return planes
 
-    @staticmethod
-    def largest_on_plane(values: np.ndarray) -> np.ndarray:
-        """The largest of ``values`` around each vertex of a plane that begins on the axis.
+    def largest_on_plane(self, values: np.ndarray, plane: tuple[float, int]) -> np.ndarray:
+        """The largest of ``values`` around each vertex of a ``plane``, given by depth and layer.
 
-        values : (meshes, rows, n) at ``samples``
+        Within `RINGS` cells, and within the depth: a load on the surface has about the same stress so far
+        away, however narrow the cells are.
+
+        values : (meshes, rows, n) at ``samples``.  Returns (meshes, rows, vertices)
         """
-        largest = largest_around(values)
-        return one_on_axis(largest, np.arange(largest.shape[-1]) <= chosen.RINGS)
+        r, (depth, _) = self.planes[plane][0], plane
+        largest = _one_on_axis(largest_around(values), np.arange(r.size) <= chosen.RINGS)
+        near = np.abs(r[:, None] - r) <= depth
+        return np.asarray(np.where(near, largest[..., None, :], 0.0).max(axis=-1))
 
     def largest_at_corners(self, values: np.ndarray) -> np.ndarray:
         """The largest of ``values`` in `RINGS` rings of triangles around each corner of the triangles.
@@ -79,7 +83,7 @@ class ComparisonPoints(Uncached):
         interfaces
         """
         on_axis = self.triangles[0].r_given[None] == 0
-        return one_on_axis(self._around_corners(values), self._around_corners(on_axis)[0] > 0)
+        return _one_on_axis(self._around_corners(values), self._around_corners(on_axis)[0] > 0)
 
     def _around_corners(self, values: np.ndarray) -> np.ndarray:
         """The largest of ``values`` (..., n) around each corner, of any rows."""
@@ -95,7 +99,7 @@ class ComparisonPoints(Uncached):
         return largest[:, vertices].reshape(*values.shape[:-1], *vertices.shape)
 
 
-def one_on_axis(largest: np.ndarray, near: np.ndarray) -> np.ndarray:
+def _one_on_axis(largest: np.ndarray, near: np.ndarray) -> np.ndarray:
     """The ``largest`` changes, one for both of each two components that are one ``near`` the axis.
 
     There both have the same error, but the change of one may cross zero. rr and tt are one where the harmonic

@@ -10,8 +10,8 @@ Roache's grid convergence index of the finest for an order p, and the larger cou
 (P. J. Roache, J. Fluids Eng. 116 (1994) 405-413, eq. 9, with his factor for an order that is not relied on).
 A last change that is small by chance does not make U small. With elements of order k, p = k + 1 for
 displacements, approach, stiffness, contact radius; p = k - 1, about the observed, for pressure and stress.
-A change of a field crosses zero along lines where no mesh is exact. Its largest value in the neighbourhood of
-a point, `RINGS` rings of triangles or cells of a line, takes its place. Meshes are compared at the same r/a.
+A change of a field crosses zero along lines where no mesh is exact. Its largest value around a point takes
+its place: in `RINGS` rings of triangles; on planes in as many cells and within their depth; at the same r/a.
 
 Other errors are added: of the load, whose known misses on coarser meshes are no changes (W ~ a^growth,
 d delta = dW / stiffness); of the contact radius, which displaces the field and so changes values next to the
@@ -119,8 +119,8 @@ class StressEstimate(Uncached):
         """Vertices and uncertainties on the surface and both sides of each interface, by (depth, layer)."""
         d, found = self.fields[0].discretisation, {}
         for key, (vertices, points) in self.points.planes.items():
-            changes = self.points.largest_on_plane(self._changes(points, key[1])[:, :6])
-            found[key] = vertices, from_changes(changes, d.order - 1)
+            largest = self.points.largest_on_plane(self._changes(points, key[1])[:, :6], key)
+            found[key] = vertices, from_changes(largest, d.order - 1)
         for upper, depth in enumerate(d.mesh.depths):
             above, below = (found[float(depth), layer][1] for layer in (upper, upper + 1))
             # one value on both sides, in error by that of either side

@@ -73,7 +73,7 @@ class Closed:
         gap, weight = np.concatenate(self._gaps), np.abs(np.concatenate([p.ravel() for _, p in self._forces]))
         return float(np.sqrt((weight * gap**2).sum() / weight.sum()) / self.approach)
 
-    @property
+    @cached_property
     def missed(self) -> float:
         """By what the approach is too small: the mean gap left inside under the pressure of a flat punch.
 

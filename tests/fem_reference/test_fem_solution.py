@@ -13,7 +13,7 @@ from fem_reference.comparison_points import samples
 from fem_reference.contact.fixed_radius import solve_at_radius
 from fem_reference.contact.levels import family
 from fem_reference.elasticity.state import ElasticState
-from fem_reference.element_numbers import COARSER, EDGE_COARSER, SAFETY
+from fem_reference.element_numbers import COARSER, EDGE_COARSER, RINGS, SAFETY
 from fem_reference.estimate import contact_estimates, estimates, from_changes
 from verification.problem.point_answers import Points
 
@@ -99,6 +99,20 @@ def test_stresses_that_are_one_on_the_axis_are_equally_uncertain():
     near = corners.largest_at_corners(values)[0, :2]
     assert near[1].min() == near[1].max() == near[0].max() == 3.0
     assert near[0].min() == 1.0
+
+
+def test_changes_on_a_plane_count_as_far_away_as_it_is_deep():
+    """On the surface within the rings alone; narrow cells of a deep interface do not make it more certain."""
+    points = solved("sphere").estimates[0].normal.points
+    for (depth, layer), (r, on_plane) in points.planes.items():
+        cell = np.searchsorted(r, 2 * points.meshes[0].mesh.contact_radius)  # begins with this vertex
+        values = np.zeros((2, 6, r.size - 1, on_plane[0].r.size // (r.size - 1)))
+        values[:, 3, cell] = 1.0
+        found = points.largest_on_plane(values.reshape(2, 6, -1), (depth, layer))
+        near = r[cell - RINGS + 1 : cell + RINGS + 1]
+        expected = (r >= near[0] - depth) & (r <= near[-1] + depth)
+        np.testing.assert_array_equal(found[0, 3] > 0, expected)
+        assert np.count_nonzero(expected) > near.size or depth == 0
 
 
 def test_stress_of_the_far_boundary_bounds_that_of_any_strain_of_its_size():
