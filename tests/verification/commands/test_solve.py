@@ -39,6 +39,7 @@ def test_options_are_a_case_file():
     [
         ([*WORDS, "--ball-coating", "3 um, 450 GPa, 0.2"], "--ball"),
         (["solve", "05_ratio_4", "--load", "20 N"], "options"),
+        (["solve", "--load", "20", "N"], "N: give a file or the options of a problem, not both; quote"),
         (["solve", "none.toml"], "none.toml"),
         ([*WORDS[:-1], '210 GPa", 0.3'], "substrate, E"),
     ],
