@@ -85,6 +85,20 @@ class Response:
             return c, 2 * self.total
         return c, max(float(np.log(2) / k[np.argmax(left)]), 2 * self.first)
 
+    def unseen_edge(self, d: float) -> float:
+        """Distance [m] by which patches of side ``d`` [m] may misplace a smooth edge of a contact.
+
+        Near the edge, a half-line, the factor of Wiener and Hopf of M(k)/M(k0) is 1 + i k s at small k: what
+        is shorter than seen moves the root of the pressure by s (B. Noble, Methods based on the Wiener-Hopf
+        technique (1958), section 1.3). Waves of fewer than 2 pi patches, k0 = 1/d, with the magnitude:
+
+            s = 1/pi int_k0^inf |ln(M(k)/M(k0))| / k^2 dk
+        """
+        k = np.geomspace(1.0, 2 + 40 * d / self.first, numbers.COMPLIANCE_SAMPLES) / d
+        M = np.maximum(1 + self.excess(k), np.finfo(float).tiny)
+        G = np.abs(np.log(M / M[0]))
+        return float(np.trapezoid(G / k, np.log(k)) + G[-1] / k[-1]) / np.pi
+
     def radial(self, points: int) -> tuple[Function, Function]:
         """g(r) and int_0^r g r dr by a logarithmic Hankel grid of as many ``points``."""
         if points not in self._radial:

@@ -56,8 +56,9 @@ class Neighbours:
         for level in self.levels:
             beside = self._pressed(level)
             own = level.of_edge["approach"] / level.found.approach  # patches cut alike are wrong alike
+            off = abs(self.approach / level.found.approach - 1)
             of_edges = max(
-                one.of_edge["approach"] / one.found.approach - own for pair in beside for one in pair
+                off, *(one.of_edge["approach"] / one.found.approach - own for pair in beside for one in pair)
             )
             found.append((of_edges, level, beside))
             if of_edges <= numbers.SHARED_NOISE:

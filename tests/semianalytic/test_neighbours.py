@@ -2,9 +2,11 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from semianalytic import solve
+from semianalytic.numbers import STEPS
 from semianalytic.patches.neighbours import Neighbours
 
 E, NU, R, W = 210e9, 0.3, 10e-3, 20.0
@@ -45,3 +47,11 @@ def test_where_no_edge_rests_the_stiffness_is_uncertain_by_them(beside, monkeypa
     with_loose_edges(monkeypatch, {level.grid.n for level in beside.levels})
     stiffness, uncertainty = replace(beside).stiffness
     assert known < abs(stiffness - at_rest) < uncertainty
+
+
+def test_neighbours_are_known_no_better_than_their_own_grid(beside):
+    """Whose approach the finest grid shows to be off by 1e-6: errors beside it need not be alike."""
+    off = replace(beside, approach=beside.approach * (1 + 1e-6))
+    stiffness, uncertainty = off.stiffness
+    assert uncertainty > beside.stiffness[1]
+    assert uncertainty / stiffness > 1e-6 / np.log1p(STEPS[0])

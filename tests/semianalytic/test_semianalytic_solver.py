@@ -303,6 +303,21 @@ def test_errors_against_the_integral_equation_are_within_the_uncertainty(name):
             assert np.all(np.abs(sigma - true) <= U), (body, z)
 
 
+def test_edge_on_a_film_that_no_patch_sees_is_as_uncertain_as_it_is_wrong():
+    """It is off alike on all three grids, whose differences do not show it."""
+    given = {"radius": R, "load": W, "substrate": STEEL, "coatings": ((0.9 * E, NU, 0.003 * A_H),)}
+    exact = integral_equation.solve(**given, estimate_uncertainty=False)
+    s = semianalytic.solve(**given, patches=129, accuracy=None)
+    error = abs(s.contact_radius - exact.contact_radius)
+    assert error <= s.uncertainty.contact_radius < 3 * error
+    of_size = [
+        value
+        for name, cause, value in s.uncertainty.budget
+        if (name, cause) == ("contact_radius", "patch size")
+    ]
+    assert of_size[0] < error / 3
+
+
 def test_patches_are_refined_to_the_accuracy_or_as_far_as_allowed(monkeypatch):
     given = {"patches": 65, "estimate_uncertainty": True}
     rough, fine = solve(STIFF, **given, accuracy=None), solve(STIFF, **given, accuracy=2e-5)
