@@ -89,8 +89,9 @@ class Response:
         """Distance [m] by which patches of side ``d`` [m] may misplace a smooth edge of a contact.
 
         Near the edge, a half-line, the factor of Wiener and Hopf of M(k)/M(k0) is 1 + i k s at small k: what
-        is shorter than seen moves the root of the pressure by s (B. Noble, Methods based on the Wiener-Hopf
-        technique (1958), section 1.3). Waves of fewer than 2 pi patches, k0 = 1/d, with the magnitude:
+        is shorter than seen moves the root of the pressure by s. By the integral of the factor (A. D.
+        Polyanin, A. V. Manzhirov, Handbook of Integral Equations (1998), section 11.10-3, eq. 44), of waves
+        shorter than 2 pi d, k0 = 1/d, with the magnitude:
 
             s = 1/pi int_k0^inf |ln(M(k)/M(k0))| / k^2 dk
         """

@@ -54,16 +54,13 @@ class Neighbours:
         """
         found = []
         for level in self.levels:
-            beside = self._pressed(level)
+            beside, off = self._pressed(level), abs(self.approach / level.found.approach - 1)
             own = level.of_edge["approach"] / level.found.approach  # patches cut alike are wrong alike
-            off = abs(self.approach / level.found.approach - 1)
-            of_edges = max(
-                off, *(one.of_edge["approach"] / one.found.approach - own for pair in beside for one in pair)
-            )
-            found.append((of_edges, level, beside))
-            if of_edges <= numbers.SHARED_NOISE:
+            of_edges = (one.of_edge["approach"] / one.found.approach - own for pair in beside for one in pair)
+            found.append((max(off, *of_edges), off, level, beside))
+            if found[-1][0] <= numbers.SHARED_NOISE:
                 break
-        of_edges, level, beside = min(found, key=lambda one: one[0])
+        of_grid, off, level, beside = min(found, key=lambda one: one[0])
         slopes = []
         for pair in beside:
             ends = [np.log([one.load, one.found.approach]) for one in pair]
@@ -74,11 +71,9 @@ class Neighbours:
         stiffness = slope * self.load / self.approach
         if self.uncertainty is None:
             return stiffness, None
-        error = numbers.OF_STEP * abs(slope - slopes[0]) / slope + abs(
-            self.approach / level.found.approach - 1
-        )
+        error = numbers.OF_STEP * abs(slope - slopes[0]) / slope + off
         # those of the approaches, over the smaller of their differences, whose slope has the larger weight
-        of_approach = max(self.uncertainty / self.approach, numbers.SHARED_NOISE, of_edges)
+        of_approach = max(self.uncertainty / self.approach, numbers.SHARED_NOISE, of_grid)
         error += of_approach / float(np.log1p(numbers.STEPS[0]))
         return stiffness, stiffness * error
 

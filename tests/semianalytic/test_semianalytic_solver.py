@@ -310,12 +310,8 @@ def test_edge_on_a_film_that_no_patch_sees_is_as_uncertain_as_it_is_wrong():
     s = semianalytic.solve(**given, patches=129, accuracy=None)
     error = abs(s.contact_radius - exact.contact_radius)
     assert error <= s.uncertainty.contact_radius < 3 * error
-    of_size = [
-        value
-        for name, cause, value in s.uncertainty.budget
-        if (name, cause) == ("contact_radius", "patch size")
-    ]
-    assert of_size[0] < error / 3
+    rows = {row[:2]: row[2] for row in s.uncertainty.budget}
+    assert rows["contact_radius", "patch size"] < error / 3
 
 
 def test_patches_are_refined_to_the_accuracy_or_as_far_as_allowed(monkeypatch):

@@ -258,9 +258,9 @@ def _working(what: str, silent: bool) -> Iterator[None]:
 
 def _from_file(file: str, given: Mapping[str, Any]) -> Case:
     if any(one is not None for one in given.values()):
+        both = f"{file}: give a file or the options of a problem, not both"
         quote = '; quote what belongs to one option, as in --radii "3.8 mm, 183 mm"'
-        quote = "" if Path(file).exists() else quote
-        raise CommandError(f"{file}: give a file or the options of a problem, not both{quote}")
+        raise CommandError(both if Path(file).exists() else both + quote)
     case = read_case(path_of(file, default_cases(), SHIPPED))
     if case.problem.indenter is not None and not case.problem.elliptical:
         raise CommandError(
