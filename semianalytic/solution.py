@@ -189,14 +189,14 @@ class Solution:
         return fields.displacement_plane(self._level, self._body.named(body), z)
 
     def _displacement(self, points: Any, stated: bool) -> PatchAnswer:
-        """Displacement [m]; uncertain by the size of the patches, by the rings, and as the approach by all
-        else."""
+        """Displacement [m]; uncertain by the size of the patches, by the rings, by the load of the shape, and
+        as the approach by all else."""
         x, y, z, body = points.x, points.y, points.z, self._body.named(points.body)
         u, *_ = fields.displacement([self._level], body, x, y, z)
         if not stated:
             return PatchAnswer(u)
         # the deflection changes by no larger a share than the pressure by what its shape leaves out
-        shares = self._level.misfit / self.peak_pressure + numbers.RINGS
+        shares = self._level.misfit / self.peak_pressure + self._level.unbalanced + numbers.RINGS
         left = self._other("approach") + shares * abs(self.approach)
         return PatchAnswer(u, self._of_patch_size(points, "displacement") + left)
 
@@ -263,7 +263,8 @@ class Solution:
             return PatchAnswer(sigma)
         p0, largest = self.peak_pressure, np.abs(sigma).max(axis=(0, 1))
         U = self._of_patch_size(points, "stress")
-        U += self._other("peak_pressure", "iteration") / p0 * largest + self._of_iteration(z)
+        of_pressure = self._other("peak_pressure", "iteration") / p0 + self._level.unbalanced
+        U += of_pressure * largest + self._of_iteration(z)
         if self._level.smooth() is None:
             deep = np.asarray(z) >= 4 * self.diagnostics.patch_size
             return PatchAnswer(sigma, U + self._rim(x, y, z) + np.where(deep, *numbers.BY_PATCHES[::-1]) * p0)

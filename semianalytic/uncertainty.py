@@ -155,12 +155,11 @@ def of_contact(levels: list[Level], indenter: Indenter, body: Body, numerics: Nu
     """Refinement study of the last three levels; conversion and domain on the coarsest, the others on the
     finest."""
     last, varied = levels[-1], levels[-3]
-    edge = last.of_edge
+    unseen = 0.0
     if last.shape is not None and body.response is not None:  # all grids miss it alike: no change shows it
         unseen = body.response.unseen_edge(last.grid.d)
-        edge = edge | {"contact_radius": edge["contact_radius"] + unseen}
     others = {
-        "edge": edge,
+        "edge": last.of_edge(unseen),
         "conversion": _by_other_coefficients(varied, body, numerics, other_conversion(numerics), 1.0),
         "domain": _by_other_coefficients(varied, body, numerics, numerics, numbers.FINER),
         "iteration": _of_iteration(last, indenter),

@@ -116,15 +116,17 @@ class Level:
         inner = loaded[2:, 1:-1] & loaded[:-2, 1:-1] & loaded[1:-1, 2:] & loaded[1:-1, :-2]
         return float(np.mean(p[(p > 0) & ~inner] ** 2) / p.max() ** 2)
 
-    @cached_property
-    def of_edge(self) -> dict[str, float]:
+    def of_edge(self, unseen: float = 0.0) -> dict[str, float]:
         """Effect of an edge that its own grid leaves uncertain: between centres of patches, or a staircase.
+
+        unseen : by how much [m] patches of this size may misplace it on every grid.
 
         The approach is stationary in the contact's area: it changes as the square of the pressure where the
         edge may be, which is of the second order at a smooth edge and of the first at that of a punch.
         Patches that a smooth edge cuts leave ``SECOND`` times the square of their share of the radius.
         """
-        moved, shape, left, at_edge = self.edge_error / self.radius, self.shape, 0.0, self.load_at_edge
+        error, shape, left, at_edge = self.edge_error + unseen, self.shape, 0.0, self.load_at_edge
+        moved = error / self.radius
         peak = self.scalars["peak_pressure"]
         if shape is not None:
             left = numbers.SECOND * (self.grid.d / min(shape.axes)) ** 2
@@ -132,7 +134,7 @@ class Level:
             at_edge = float(np.mean(p**2)) / 2 / peak**2
         of_peak = left + moved**2 + 2 * self.unsettled / self.radius if shape is not None else 0.0
         return {
-            "contact_radius": self.edge_error,
+            "contact_radius": error,
             "approach": self.found.approach * (left + at_edge * moved + moved**2),
             "peak_pressure": peak * of_peak,
         }
@@ -159,6 +161,22 @@ class Level:
         if self.edge is None:
             return self.found.pressure
         return smooth_edge.patch_mean(self.edge, self.found.pressure, self.grid)
+
+    @cached_property
+    def unbalanced(self) -> float:
+        """Share of the load by which the pressure that fields are computed from is out of balance.
+
+        The load is in balance on the patches; ``shape`` is fitted to their pressures, and with ``rest`` it is
+        only as good as the fit.
+        """
+        smooth = self.smooth()
+        if smooth is None:
+            return 0.0
+        rings = smooth.rings(np.zeros(1), np.zeros(1), np.array([self.radius]))
+        carried = float(rings.weight @ rings.harmonics[0])
+        if self.rest is not None:
+            carried += self.grid.force(self.rest)
+        return abs(carried / self.load - 1)
 
     @cached_property
     def ripple(self) -> float:

@@ -55,9 +55,11 @@ class Neighbours:
         found = []
         for level in self.levels:
             beside, off = self._pressed(level), abs(self.approach / level.found.approach - 1)
-            own = level.of_edge["approach"] / level.found.approach  # patches cut alike are wrong alike
-            of_edges = (one.of_edge["approach"] / one.found.approach - own for pair in beside for one in pair)
-            found.append((max(off, *of_edges), off, level, beside))
+            own, *others = (
+                one.of_edge()["approach"] / one.found.approach for one in (level, *beside[0], *beside[1])
+            )
+            of_edges = max(others) - own  # patches cut alike are wrong alike
+            found.append((max(off, of_edges), off, level, beside))
             if found[-1][0] <= numbers.SHARED_NOISE:
                 break
         of_grid, off, level, beside = min(found, key=lambda one: one[0])

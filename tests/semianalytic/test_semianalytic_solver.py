@@ -10,6 +10,7 @@ import pytest
 import semianalytic
 from semianalytic.inputs import undeformed_gap
 from semianalytic.patches import nested
+from semianalytic.patches.level import Level
 from verification.problem.point_answers import EDGE, Points
 from verification.sources.references import integral_equation
 
@@ -227,6 +228,25 @@ def test_a_thin_film_on_few_patches_states_how_little_is_resolved(ratio, h):
     s = solve(coatings, patches=33, estimate_uncertainty=True)
     for name in ("contact_radius", "approach", "peak_pressure"):
         assert abs(getattr(s, name) - getattr(exact, name)) <= getattr(s.uncertainty, name), name
+
+
+def test_a_displacement_is_as_uncertain_as_the_load_below_which_it_is(monkeypatch):
+    """On films thinner than a patch the shape misses the edge, and with it a share of the load."""
+    soft, a = 1.7e9, 0.38e-3
+    films = ((3.5 * soft, 0.4, 0.0015 * a), (0.4 * soft, 0.06, 0.0047 * a))
+    given = {"radius": 13e-3, "load": 11.0, "coatings": films, "substrate": (soft, 0.385)}
+    s = solve(**given)
+    exact = integral_equation.solve(**given, estimate_uncertainty=False)
+    off = s.displacement(20 * a, 0.0, 0.0)[2] / exact.displacement(20 * a, 0.0, 0.0)[2] - 1
+    assert abs(off) == pytest.approx(s._level.unbalanced, rel=0, abs=2e-8)
+    assert s._level.unbalanced > 5e-7
+
+    s, far = solve(patches=65, estimate_uncertainty=True), Points(5 * A_H)
+    monkeypatch.setattr(Level, "unbalanced", 0.0)
+    stated = s.sample(far, "displacement").uncertainty
+    monkeypatch.setattr(Level, "unbalanced", 0.01)
+    more = s.sample(far, "displacement").uncertainty - stated
+    np.testing.assert_allclose(more, 0.01 * s.approach)
 
 
 def test_an_uncertainty_that_is_not_estimated_is_none():
