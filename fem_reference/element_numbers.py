@@ -13,6 +13,9 @@ EDGE_COARSER = 4.0  # the same of the last triangles at the edge: what these mis
 # needed in 17 random problems. Also for two meshes of a contact that is not round.
 SAFETY = 3.0
 RINGS = 3  # of triangles around a point, or cells of a line on either side, within which changes count
+# Times as much on the axis, where integrals in r dr hold the fields least, and so far under contacts that are
+# not round [test_shaped_contact]; on planes of round ones 1.7 was needed in some 900 random problems.
+AXIS_SAFETY = 2.25, 0.15
 # Of a stress over the peak pressure: rounding deep in a stack, 4e-8 against the exact reference.
 ROUNDING = 1e-7
 # The displacement of the field is part of the uncertainty within this distance of the edge over the radius.
@@ -112,7 +115,6 @@ SHAPED_COARSER = 1.3  # triangles of the companion over those of the mesh
 # Times the change of fields from the companion, with the order that is observed beside edges; and that of the
 # pressure and the scalars by the last degree.
 OF_FIELDS = 2.0
-AXIS_SAFETY = 2.25, 0.15  # times as much on the axis, where integrals in r dr hold the fields least; so far
 # What lies beyond the last harmonic, over what the last third of them adds: of the deflection, whose terms
 # fall as m^-5/2, of the stress, m^-3/2, and alternate in sign but at the edge.
 BEYOND = 0.5, 1.0

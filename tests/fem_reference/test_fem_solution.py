@@ -13,7 +13,7 @@ from fem_reference.comparison_points import samples
 from fem_reference.contact.fixed_radius import solve_at_radius
 from fem_reference.contact.levels import family
 from fem_reference.elasticity.state import ElasticState
-from fem_reference.element_numbers import COARSER, EDGE_COARSER, RINGS, SAFETY
+from fem_reference.element_numbers import AXIS_SAFETY, COARSER, EDGE_COARSER, RINGS, SAFETY
 from fem_reference.estimate import contact_estimates, estimates, from_changes
 from verification.problem.point_answers import Points
 
@@ -113,6 +113,9 @@ def test_changes_on_a_plane_count_as_far_away_as_it_is_deep():
         expected = (r >= near[0] - depth) & (r <= near[-1] + depth)
         np.testing.assert_array_equal(found[0, 3] > 0, expected)
         assert np.count_nonzero(expected) > near.size or depth == 0
+        alike = points.largest_on_plane(np.ones((2, 6, on_plane[0].r.size)), (depth, layer))
+        assert np.all(alike[..., 1:] == 1), "changes of one size"
+        assert np.all(alike[..., 0] == AXIS_SAFETY[0]), "on the axis"
 
 
 def test_stress_of_the_far_boundary_bounds_that_of_any_strain_of_its_size():
