@@ -67,16 +67,16 @@ class ComparisonPoints(Uncached):
         """The largest of ``values`` around each vertex of a ``plane``, given by depth and layer.
 
         Within `RINGS` cells, and within the depth: a load on the surface has about the same stress so far
-        away, however narrow the cells are. On the axis `AXIS_SAFETY` times as much, for what its one cell
-        misses depends on the triangles by chance.
+        away, however narrow the cells are. Changes on the axis count `AXIS_SAFETY` times, for what its one
+        cell misses depends on the triangles by chance.
 
         values : (meshes, rows, n) at ``samples``.  Returns (meshes, rows, vertices)
         """
         r, (depth, _) = self.planes[plane][0], plane
         largest = _one_on_axis(largest_around(values), np.arange(r.size) <= chosen.RINGS)
         near = np.abs(r[:, None] - r) <= depth
-        safety = np.where(r == 0, chosen.AXIS_SAFETY[0], 1.0)
-        return np.asarray(safety * np.where(near, largest[..., None, :], 0.0).max(axis=-1))
+        counted = largest * np.where(r == 0, chosen.AXIS_SAFETY[0], 1.0)
+        return np.asarray(np.where(near, counted[..., None, :], 0.0).max(axis=-1))
 
     def largest_at_corners(self, values: np.ndarray) -> np.ndarray:
         """The largest of ``values`` in `RINGS` rings of triangles around each corner of the triangles.

@@ -13,8 +13,9 @@ EDGE_COARSER = 4.0  # the same of the last triangles at the edge: what these mis
 # needed in 17 random problems. Also for two meshes of a contact that is not round.
 SAFETY = 3.0
 RINGS = 3  # of triangles around a point, or cells of a line on either side, within which changes count
-# Times as much on the axis, where integrals in r dr hold the fields least, and so far under contacts that are
-# not round [test_shaped_contact]; on planes of round ones 1.7 was needed in some 900 random problems.
+# Times as much on the axis, where integrals in r dr hold the fields least; under contacts that are not round
+# less and less to this part of the unit of length [test_shaped_contact], on planes of round ones on the
+# axis alone: 1.7 was needed in some 900 random problems.
 AXIS_SAFETY = 2.25, 0.15
 # Of a stress over the peak pressure: rounding deep in a stack, 4e-8 against the exact reference.
 ROUNDING = 1e-7

@@ -34,9 +34,9 @@ COARSEST = 33
 # is in any case, and updates after which it follows the signs of p and g: fewer let the set oscillate.
 # [bench]
 RESIDUAL_FALL, ITERATIONS_PER_SET, PREDICTED_UPDATES = 0.5, 3, 12
-# Iterations after which the residual is cut off at the edge, and after which there is no preconditioner, as
-# Polonsky and Keer: for contacts that it misleads. [bench]
-EXTENDED_ITERATIONS, PRECONDITIONED_ITERATIONS = 10, 50
+# Iterations after which the residual is cut off at the edge, and after which the preconditioner is that of
+# a half-space: for contacts that the other misleads. [bench]
+EXTENDED_ITERATIONS, PRECONDITIONED_ITERATIONS = 10, 100
 # Change of the pressure by a further step, over its peak and the tolerance, beyond which the iteration goes
 # on: 1e-6 of the peak. On a stiff film that it hardly bends 2e-5 was left. [problems]
 LEFT = 1e3

@@ -189,8 +189,9 @@ class Solution:
         return fields.displacement_plane(self._level, self._body.named(body), z)
 
     def _displacement(self, points: Any, stated: bool) -> PatchAnswer:
-        """Displacement [m]; uncertain by the size of the patches, by the rings, by the load of the shape, and
-        as the approach by all else."""
+        """Displacement [m]; uncertain by the size of the patches, by the rings, by the load of the shape, as
+        the approach by all else, and where the edge lies by its place: the slope there is at most twice the
+        approach over the radius."""
         x, y, z, body = points.x, points.y, points.z, self._body.named(points.body)
         u, *_ = fields.displacement([self._level], body, x, y, z)
         if not stated:
@@ -198,7 +199,11 @@ class Solution:
         # the deflection changes by no larger a share than the pressure by what its shape leaves out
         shares = self._level.misfit / self.peak_pressure + self._level.unbalanced + numbers.RINGS
         left = self._other("approach") + shares * abs(self.approach)
-        return PatchAnswer(u, self._of_patch_size(points, "displacement") + left)
+        U = self._of_patch_size(points, "displacement") + left
+        if (shape := self._level.shape) is not None:
+            moved = 2 * self._uncertain_reach / min(shape.axes) * abs(self.approach)
+            U += moved / self._patches_to_edge(x, y, z)
+        return PatchAnswer(u, U)
 
     def _pressure(self, points: Any, stated: bool) -> PatchAnswer:
         """Contact pressure [Pa]: with a smooth edge that of its shape, fitted to the patches; of patches
@@ -309,9 +314,8 @@ class Solution:
         assert shape is not None
         distant = (x * x + y * y + z * z) / self.contact_radius**2
         inside = float(shape.pressure(*shape.on_ray(max(1 - d / min(shape.axes), 0.0), np.zeros(()))))
-        away = np.maximum(np.hypot(self._to_edge(x, y), z) / d, 1.0)
         at_edge = (1 + 2 * abs(self._body.friction)) * level.edge_error / (2 * d) * inside
-        return np.asarray(level.misfit / (1 + distant) + at_edge / away**1.5)
+        return np.asarray(level.misfit / (1 + distant) + at_edge / self._patches_to_edge(x, y, z) ** 1.5)
 
     def _of_all_levels(self, quantity: str, body: str, x: Array, y: Array, z: Array, layer: Any) -> Array:
         """A field of the three levels, at the same share of the way to their edge but for displacements."""
@@ -402,6 +406,11 @@ class Solution:
         shape = self._level.shape
         assert shape is not None
         return np.abs(1 - shape.share(x, y)) * min(shape.axes)
+
+    def _patches_to_edge(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Array:
+        """That distance in patches, at least one."""
+        away = np.hypot(self._to_edge(x, y), z) / self.diagnostics.patch_size
+        return np.asarray(np.maximum(away, 1.0))
 
     @property
     def _stated(self) -> Uncertainty:

@@ -76,6 +76,11 @@ class Shape:
             )
         return float(np.sqrt(2 * area if self.twin else area))
 
+    @property
+    def width(self) -> float:
+        """Half the distance from the edge to the singularities of q [m], near t = +-ie."""
+        return self.layer * min(self.axes) / 4
+
     def reach(self, angle: Array) -> Array:
         """s of the edge in the direction ``angle`` of u + iv: t along a ray is nearly 1 - (s/reach)^2."""
         reach: Array = np.ones(np.shape(angle))

@@ -42,7 +42,7 @@ class Contact:
     gap_inside, penetration_outside : largest |g| where p > 0 and largest -g where p = 0, over the scale
     of the gap.  load_error : relative.  history : (gap, penetration) before each iteration.
     convolutions : applications of A.  left : largest change of p [Pa] by a further step, z = P g, A^-1 of the
-    gap left; inf where P was dropped.
+    gap left; inf where P was that of a half-space.
     """
 
     pressure: Array
@@ -74,7 +74,8 @@ class Problem:
 
     deflection : u = A p, linear, symmetric, positive.  gap : g0 [m], (nx, ny).
     total : sum of p over the patches [Pa], for load control; else approach : delta [m], the other one None.
-    start : computes a first guess of p.  precondition : z = P r, approximate inverse of A.
+    start : computes a first guess of p.  precondition : z = P r, approximate inverse of A.  of_half_space :
+    that of an uncoated half-space, which takes its place after ``PRECONDITIONED_ITERATIONS``.
     scale : length to which gap and penetration are relative [m].  tolerance : on each of them, relative.
     extension : patches over which the residual is extended beyond the contact.
     weight : patches that each entry represents, where the operators and the gap are those of a ``grid.Grid``
@@ -88,6 +89,7 @@ class Problem:
     approach: float | None
     start: Callable[[], Array]
     precondition: Operator
+    of_half_space: Operator
     scale: float
     tolerance: float
     max_iterations: int
@@ -219,7 +221,7 @@ def _start(problem: Problem) -> Array:
 
 
 def _choose_preconditioner(state: _State, problem: Problem) -> None:
-    """Cut P off at the edge, later drop it; what conjugate directions have been built is discarded."""
+    """Cut P off at the edge, later take that of a half-space; conjugate directions built so far are lost."""
     if state.iterations == numbers.PRECONDITIONED_ITERATIONS:
         # where the preconditioner misleads, the iterate is far from the solution: start from the first guess
         state.p = _start(problem)
@@ -233,9 +235,9 @@ def _choose_preconditioner(state: _State, problem: Problem) -> None:
 
 
 def _precondition(r: Array, extended: Array, state: _State, problem: Problem) -> Array:
-    """z = P r on the contact set, of r or of its extension; r itself once P is dropped."""
+    """z = P r on the contact set, of r or of its extension; in the end P is that of a half-space."""
     if state.iterations >= numbers.PRECONDITIONED_ITERATIONS:
-        return r
+        return problem.of_half_space(r) * state.contact.inside
     z = problem.precondition(extended if state.iterations < numbers.EXTENDED_ITERATIONS else r)
     return z * state.contact.inside
 
@@ -318,12 +320,12 @@ def _update_set(state: _State, problem: Problem) -> bool:
     if state.admissible or state.new:
         return False
     inside, leave = state.contact.inside, state.tension  # p < 0 in contact alone
+    fallen = state.residual <= max(numbers.RESIDUAL_FALL * state.first, 0.3 * problem.tolerance)
+    if not fallen and state.on_set < numbers.ITERATIONS_PER_SET:
+        return False
     if state.set_updates >= numbers.PREDICTED_UPDATES:
         enter = ~inside & (state.g < -state.deep)
     else:
-        fallen = state.residual <= max(numbers.RESIDUAL_FALL * state.first, 0.3 * problem.tolerance)
-        if not fallen and state.on_set < numbers.ITERATIONS_PER_SET:
-            return False
         # the set predicted for a vanishing residual: g less its extension outside, p less z inside
         predicted = state.g - state.extended + state.contact.one() * state.shift
         enter = ~inside & (predicted < -0.5 * problem.tolerance * problem.scale)

@@ -287,6 +287,14 @@ class LevelProblem:
             self._kernel, quarter=self.grid.quarter, threads=self.numerics.threads
         )
 
+    @cached_property
+    def of_half_space(self) -> contact.Operator:
+        """An inverse of A without layers, in proportion to k: the cut at the edge does it no harm."""
+        nx, ny = self.grid.across(self.window).shape
+        uncoated = Body((), self.body.substrate, friction=0.0)
+        kernel = influence.surface_coefficients(max(nx, ny), self.grid.d, uncoated, self.numerics)[:nx, :ny]
+        return convolution.circulant_inverse(kernel, quarter=self.grid.quarter, threads=self.numerics.threads)
+
     def solve(self, defect: Array | float = 0.0, missing: float = 0.0, start: Array | None = None) -> Level:
         """Contact with ``defect`` [m] added to the gap and ``missing`` [N] of the load not on the patches.
 
@@ -303,6 +311,7 @@ class LevelProblem:
             approach=None if indenter.approach is None else indenter.approach + self.datum,
             start=self.first_guess if start is None else start.copy,
             precondition=self.precondition,
+            of_half_space=lambda r: self.of_half_space(r),  # few contacts need it
             scale=scale,
             tolerance=self.numerics.tolerance,
             max_iterations=self.numerics.max_iterations,

@@ -25,13 +25,14 @@ def from_gap(delta: Array, width: Array, crossing: NDArray[np.bool_], s: Array) 
 
 
 def panels(
-    marks: list[tuple[list[float], bool]], scale: Array, nodes: int
+    marks: list[tuple[list[float], bool]], scale: Array, nodes: int, width: float = np.inf
 ) -> tuple[NDArray[np.intp], Array, Array]:
     """Gauss points on the rings of each point: its index, rho, weight rho d rho, (n,) each.
 
-    marks : radii at which rings touch the edge, ascending, and whether the point is inside.
+    marks : radii at which rings touch the edge, ascending, and whether the point is inside.  width [m] : over
+    which the pressure changes beside the edge.
     """
-    graded = [_graded(*mark, float(depth)) for mark, depth in zip(marks, scale, strict=True)]
+    graded = [_graded(*mark, float(depth), width) for mark, depth in zip(marks, scale, strict=True)]
     foot = np.repeat(np.arange(len(graded)), [nodes * len(one) for one in graded])
     begin, length, crowded = np.array([panel for one in graded for panel in one]).T[:, :, None]
     s, w = gauss_legendre(nodes)
@@ -40,7 +41,9 @@ def panels(
     return foot, radius.ravel(), (weight * radius).ravel()
 
 
-def _graded(touches: list[float], inside: bool, scale: float) -> list[tuple[float, float, bool]]:
+def _graded(
+    touches: list[float], inside: bool, scale: float, width: float
+) -> list[tuple[float, float, bool]]:
     """Panels of rho up to the last touching ring, from the first or, inside, from 0.
 
     Of each where it begins, its length, and whether its points crowd where it begins, as s^4; the length is
@@ -59,20 +62,23 @@ def _graded(touches: list[float], inside: bool, scale: float) -> list[tuple[floa
     first, last = touches[0], touches[-1]
     least = max(first, numbers.ROUNDING * last)
     if inside and first > 0:
-        near = 0.75 * first
-        plain(0.0, near, 0.75, first)
+        far, near = 0.75 * first, max(0.75 * first, first - width)
+        plain(0.0, far, 0.75, first)
+        plain(far, near, 0.5, first)
         found.append((first, near - first, True))
     for low, high in pairwise([first, *touches[1:-1], last]):
         if high <= low:
             continue
         # graded from the lower end, from the middle on towards the upper one
         to = (low + high) / 2
-        begin = min(0.5 * least, (to - low) / 2, scale if low == 0 else np.inf)
+        begin = min(0.5 * least, (to - low) / 2, width, scale if low == 0 else np.inf)
         found.append((low, begin, True))
         plain(low + begin, to, 1.5, low)
         end = (high - to) / 2 if high == last else min(0.5 * least, (high - to) / 2)
+        near = min(end, width)
         plain(to, high - end, 0.6, high, end)
-        found.append((high, -end, True))
+        plain(high - end, high - near, 0.5, high)
+        found.append((high, -near, True))
     return found
 
 

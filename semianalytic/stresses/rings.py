@@ -54,10 +54,11 @@ def rings_of(shape: Shape, coarser: int = 0) -> "RingPressure":
     """The pressure of a shape, by fewer points where ``coarser``; the same object for the same one."""
     terms = max(len(shape.coefficients), 6)
     more = 12 if shape.outside else 0
-    angular, radial = 12 + more + terms - 2 * coarser, 6 + more + terms // 2 - coarser
+    length = int(np.arcsinh(1 / shape.layer))  # of the polynomials' argument, which varies along an arc
+    angular, radial = 12 + more + terms + 2 * length - 2 * coarser, 6 + more + terms // 2 - coarser
     if shape.round:
         # fewer on an arc are enough here: 1e-8 of the peak pressure, against 120
-        return Disc(shape.axes[0], shape.at_distance, angular - 4, radial)
+        return Disc(shape.axes[0], shape.at_distance, angular - 4, radial, shape.width)
     if shape.twin:
         return Twins(SmoothContour(replace(shape, twin=False), angular, radial))
     return SmoothContour(shape, angular, radial)
@@ -66,12 +67,13 @@ def rings_of(shape: Shape, coarser: int = 0) -> "RingPressure":
 @dataclass(frozen=True, eq=False)
 class Disc:
     """Round pressure: ``of_square``, p of r^2, on a disc of ``radius`` [m]; Gauss points on an arc, on a
-    panel."""
+    panel; ``width`` [m] over which p changes beside the edge."""
 
     radius: float
     of_square: Callable[[Array], Array]
     angular: int = 20
     radial: int = 8
+    width: float = np.inf
 
     def pressure(self, x: ArrayLike, y: ArrayLike) -> Array:
         """p [Pa], 0 outside."""
@@ -111,7 +113,7 @@ def _around(discs: Sequence[Disc], x: Array, y: Array, scale: Array) -> list[Rin
     least = np.full(r0.size, np.inf)
     np.minimum.at(least, same, scale)
     marks = [([abs(a - one), a + one], one < a) for one in r0]
-    foot, radius, weight = panels(marks, least, first.radial)
+    foot, radius, weight = panels(marks, least, first.radial, first.width)
     harmonics = np.zeros((len(discs), 7, foot.size))
     s, w = gauss_legendre(first.angular)
     for begin in range(0, foot.size, numbers.CACHE // first.angular):
@@ -173,7 +175,7 @@ class SmoothContour:
         """Rings around points without regard to mirror images."""
         inside = self.shape.polynomials(x, y)[0] > 0
         marks = list(zip(self._touching(x, y), inside.tolist(), strict=True))
-        foot, radius, weight = panels(marks, scale, self.radial)
+        foot, radius, weight = panels(marks, scale, self.radial, self.shape.width)
         harmonics = np.empty((7, foot.size))
         step = numbers.CACHE // self.angular
         for begin in range(0, foot.size, step):
@@ -412,7 +414,7 @@ def _segments(
     for _ in range(3):
         minus, here, plus = (t(ring, phi + shift) for shift in (-h, 0.0, h))
         slope, curvature = (plus - minus) / (2 * h), (plus - 2 * here + minus) / h**2
-        good = np.where(low, curvature, -curvature) > 1e-12 * np.abs(sampled).max()
+        good = ~flat[ring] & (np.where(low, curvature, -curvature) > 1e-12 * np.abs(sampled).max())
         change = np.where(good, -slope / np.where(good, curvature, 1.0), 0.0)
         phi = phi + np.clip(change, -np.pi / numbers.RING, np.pi / numbers.RING)
     # neighbours along a ring, the last one and the first

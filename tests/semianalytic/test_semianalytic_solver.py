@@ -249,6 +249,16 @@ def test_a_displacement_is_as_uncertain_as_its_shape_is_out_of_balance(monkeypat
     np.testing.assert_allclose(more, 0.01 * s.approach)
 
 
+def test_a_displacement_beside_the_edge_is_as_uncertain_as_the_place_of_the_edge():
+    s = solve(patches=65, estimate_uncertainty=True)
+    a, d = s.contact_radius, s.diagnostics.patch_size
+    u = s.displacement(a + np.array([-1e-3, 1e-3]) * a, 0.0, 0.0)[2]
+    slope = abs(u[1] - u[0]) / (2e-3 * a)
+    beside, inside, far = s.sample(Points(np.array([a, a - 8 * d, 3 * a])), "displacement").uncertainty[2]
+    assert beside - far > slope * s.uncertainty.contact_radius
+    assert inside - far < slope * s.uncertainty.contact_radius
+
+
 def test_an_uncertainty_that_is_not_estimated_is_none():
     s = solve(patches=65)
     assert s.uncertainty is None

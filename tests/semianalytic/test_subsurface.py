@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.polynomial import legendre
+from scipy.integrate import quad
 from scipy.special import ellipeinc, ellipkinc, jv, spherical_jn
 
 from semianalytic import numbers
@@ -159,6 +160,21 @@ def test_stress_below_a_contour_is_the_sum_of_its_point_forces(shape, atol):
     z = rng.uniform(0.5, 1, 40)  # where the sum has converged, to 1e-10
     found = stress(x, y, z, pressure=rings_of(shape))[SIX]
     np.testing.assert_allclose(found, by_point_forces(x, y, z, shape), rtol=0, atol=atol)
+
+
+@pytest.mark.parametrize("e", [0.02, 0.1, 0.3])
+@pytest.mark.parametrize("place", [0.0, 0.5, 1.0, 1.3, 20.0])
+@pytest.mark.parametrize("harmonics", [numbers.ROUND, numbers.EVEN])
+def test_rings_carry_the_load_of_a_film_that_is_narrower_than_their_panels(e, place, harmonics):
+    """f = sqrt(t) tau^6 of tau that changes within e of the edge; W = pi int f dt over t = 1 - r^2."""
+    coefficients = np.zeros((7, len(harmonics)))
+    coefficients[:, 0] = legendre.poly2leg([0, 0, 0, 0, 0, 0, 1])
+    shape = Shape((0.0, 0.0), (1.0, 1.0), harmonics, np.zeros(len(harmonics)), coefficients, layer=e)
+    rings = rings_of(shape).rings(np.array([place]), np.zeros(1), np.array([0.1]))
+    load, _ = quad(
+        lambda v: 2 * np.pi * v * shape.at_distance(1 - v * v), 0, 1, points=[e**0.5], epsabs=1e-13
+    )
+    assert rings.weight @ rings.harmonics[0] == pytest.approx(load, abs=2 * RINGS)
 
 
 @pytest.mark.parametrize("harmonics", [numbers.EVEN, numbers.ACROSS])

@@ -37,8 +37,9 @@ def solve_elements(problem: Problem, numerics: Mapping[str, Any] | None = None) 
 
         return loading(problem, partial(_elements, {"size": CURVE_SIZE, **(numerics or {})}), limits=True)
     given = dict(numerics or {})
-    if isinstance(problem, PrescribedLoad) and short_of_limit(problem, 1) != problem:
-        given = {"quality": "fine"} | given  # the extrapolation adds up the uncertainties of its solutions
+    own = given.keys() & {"quality", "size"}
+    if isinstance(problem, PrescribedLoad) and short_of_limit(problem, 1) != problem and not own:
+        given["size"] = 0.08  # the smallest: the extrapolation adds up the uncertainties of its solutions
     return extrapolated(problem, partial(_elements, given))
 
 
