@@ -95,6 +95,8 @@ def _rounds(problem: LevelProblem, shape: Shape, p: Array | None) -> Level | Non
     edge = replace(edge, parts=edge.parts.mean(axis=1, keepdims=True))  # all that is needed from now on
     if not edge.misfit < numbers.MISFIT or min(shape.axes) < numbers.NARROW_EDGE * grid.d:
         return None
+    if abs(shape.radius - level.radius) > grid.d:  # a contour that loops between the patches
+        return None
     if not (problem.indenter.round or shape.outside):
         missed = np.where(p > 0, np.abs(p - shape.pressure(x, y)), 0.0)
         missed[edge.i, edge.j] = 0.0
