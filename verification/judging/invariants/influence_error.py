@@ -29,8 +29,9 @@ def coefficient_error(problem: CoatedContact, side: float, patches: int = 33) ->
 def influence_coefficients(solution: ContactSolution, source: str, problem: CoatedContact) -> Invariant:
     """The coefficients in use, of patches and of their parts at the edge, at near and far offsets.
 
-    ``surface_coefficients`` is called as the solution calls it: on its grid, for both bodies. The quadrature
-    is that of the response of the layers in the references, around the edge of each patch.
+    ``surface_coefficients`` is called as the solution calls it: on its grid, for both bodies, and on the
+    coarsest of all over the same square, whose patches are wider than many films are thick. The quadrature is
+    that of the response of the layers in the references, around the edge of each patch.
     """
     from semianalytic import numbers
     from semianalytic.coefficients import influence
@@ -40,7 +41,8 @@ def influence_coefficients(solution: ContactSolution, source: str, problem: Coat
     n = getattr(stated, "patches_per_side", PATCHES)
     d = getattr(stated, "patch_size", None) or 2.24 * solution.contact_radius / n
     errors = []
-    for size, side in ((n, d), ((numbers.NEAR_PARTS + 1) * parts, d / parts)):
+    grids = (n, d), (numbers.COARSEST, d * n / numbers.COARSEST)
+    for size, side in (*grids, ((numbers.NEAR_PARTS + 1) * parts, d / parts)):
         K = influence.surface_coefficients(size, side, body, Numerics())
         places = _places(size)
         exact = _by_quadrature(problem, places, side)
