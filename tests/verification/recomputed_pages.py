@@ -124,7 +124,7 @@ def alarms_of(campaigns):
         sum(one.problems for one in campaigns),
     )
     wrong = {one.case for one in every if one.outcome != "INCONCLUSIVE"}
-    vague = {one.case for one in every if one.outcome == "INCONCLUSIVE"}
+    vague = {one.case for one in every if one.outcome == "INCONCLUSIVE"} - wrong
     return [[one.seed for one in campaigns], len(wrong), len(vague), total, bound_at_95(len(wrong), total)]
 
 

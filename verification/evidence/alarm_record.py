@@ -81,8 +81,8 @@ class Campaign:
 
     @property
     def vague(self) -> set[str]:
-        """Problems with a verdict that finds U above its cap."""
-        return {one.case for one in self.alarms if one.outcome is Outcome.INCONCLUSIVE}
+        """Of the others, problems with a verdict that finds U above its cap."""
+        return {one.case for one in self.alarms} - self.wrong
 
 
 @dataclass(frozen=True)

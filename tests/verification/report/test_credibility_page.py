@@ -13,6 +13,7 @@ from verification.evidence.alarm_record import AlarmRecord
 from verification.evidence.enclosure_record import SHIPPED
 from verification.evidence.fault_record import Catch, FaultRow, Record, write_record
 from verification.evidence.judged_source import is_older, source_hash
+from verification.judging.verdict import Outcome
 from verification.page.page_parts import Part, Section
 from verification.problem.quantity import SCALARS, SLOPES
 from verification.report.credibility import credibility_statement
@@ -85,6 +86,9 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
     assert known.alarms == record
     found = section(known)
     assert made.vague == {"vague"}
+    missing = replace(made.alarms[0], outcome=Outcome.NO_RESULT)
+    both = replace(made, alarms=(*made.alarms, missing))
+    assert (both.wrong, both.vague) == ({"vague"}, set())
     text = said(part(found, "False"))
     assert f"{record.wrong} of 2 round contacts raised a false alarm" in text
     assert f"at most {100 * record.rate:.2g} %" in text

@@ -304,7 +304,7 @@ def worth(material: ReportMaterial) -> list[Worth]:
     share("true error within U", [item.covered for item in known], "#accuracy", note)
     for kind, of in evidence.alarms.kinds.items() if evidence.alarms else ():
         seeds = ", ".join(str(one.seed) for one in of.campaigns)
-        vague = sum(len(one.vague - one.wrong) for one in of.campaigns)
+        vague = sum(len(one.vague) for one in of.campaigns)
         note = f"{vague} inconclusive; seeds {seeds}; rate below {plain(100 * of.rate, 2)} % (95 % sure); "
         name = f"random {kind} with a false alarm"
         recorded(name, of.wrong, of.problems, "#alarms", of.campaigns[-1], note)
