@@ -89,6 +89,9 @@ def test_figures_of_a_record_carry_date_and_commit(evidence, tmp_path):
     missing = replace(made.alarms[0], outcome=Outcome.NO_RESULT)
     both = replace(made, alarms=(*made.alarms, missing))
     assert (both.wrong, both.vague) == ({"vague"}, set())
+    many = replace(made, alarms=(*made.alarms * credibility_statement.MOST, missing))
+    shown = section(known, alarms=AlarmRecord((many,)))
+    assert "no result" in said(shown.parts[-2])  # the false alarm before those inconclusive
     text = said(part(found, "False"))
     assert f"{record.wrong} of 2 round contacts raised a false alarm" in text
     assert f"at most {100 * record.rate:.2g} %" in text

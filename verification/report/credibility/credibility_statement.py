@@ -224,7 +224,8 @@ def _alarms(evidence: Evidence) -> list[Part]:
             ("made", lambda one: f"{one.started[:10]}, {(one.commit or 'no commit')[:8]}"),
         ],
     )
-    alarms = [alarm for one in record.campaigns for alarm in one.alarms]
+    every = [alarm for one in record.campaigns for alarm in one.alarms]
+    alarms = sorted(every, key=lambda alarm: alarm.outcome is Outcome.INCONCLUSIVE)
     table = table_of(
         f"The first {MOST} of {len(alarms)}." if len(alarms) > MOST else f"All {len(alarms)}.",
         alarms[:MOST],
