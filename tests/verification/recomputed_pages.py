@@ -238,7 +238,10 @@ def credibility(data, dates):
     ends = ("difference", "uncertainty")
     yield "between|agree", [[agree(of), *(largest(of, end) for end in ends)] for of in pairs]
     yield "part|files", [one.of("files", "statements") for one in e.code.parts]
-    yield "problem|verdict", [alarm for one in drawn for alarm in one.alarms]
+    listed = group(
+        [alarm for one in drawn for alarm in one.alarms], lambda one: one.outcome == "INCONCLUSIVE"
+    )
+    yield "problem|verdict", [*listed.get(False, []), *listed.get(True, [])]
     yield "random|seed", [drawn_row(one) for one in drawn]
     every = [law for case in cases for law in case.invariants]
     laws = group(every, lambda law: re.sub(", (coating|interface|layer) [0-9]+$|, substrate$", "", law.name))

@@ -81,7 +81,7 @@ class Campaign:
 
     @property
     def vague(self) -> set[str]:
-        """Of the others, problems with a verdict that finds U above its cap."""
+        """Problems with a verdict that finds U above its cap, and no false alarm."""
         return {one.case for one in self.alarms} - self.wrong
 
 
