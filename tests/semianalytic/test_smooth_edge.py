@@ -249,6 +249,17 @@ def test_an_edge_that_is_no_smooth_curve_is_left_to_the_patches(profile):
     assert corrected.contact_radius == alone.contact_radius
 
 
+def test_a_contour_of_another_area_than_the_loaded_patches_is_left_to_them(monkeypatch):
+    # such as one that loops between the patches, here of every shape
+    ellipse = Ellipse(2)
+    assert ellipse.indent(97)._level.shape is not None
+    alone = ellipse.indent(97, edge_correction=False)
+    monkeypatch.setattr(Shape, "radius", property(lambda self: 1.1 * float(np.sqrt(np.prod(self.axes)))))
+    found = ellipse.indent(97)
+    assert found._level.shape is None
+    assert found.contact_radius == alone.contact_radius
+
+
 def test_edge_correction_has_to_be_a_truth_value():
     with pytest.raises(ValueError, match="edge_correction = 1;"):
         Ellipse(2).indent(65, edge_correction=1)
