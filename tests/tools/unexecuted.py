@@ -40,7 +40,8 @@ def unexecuted(*, traces: Path | None = None) -> int:
     Parameters
     ----------
     traces
-        File of executed lines that a run with LINE_TRACE wrote (`line_trace/sitecustomize.py`).
+        File of executed lines that runs with LINE_TRACE wrote (`line_trace/sitecustomize.py`), each after the
+        other: among all tests a worker may lose its trace, and tests of some rooms alone add what it missed.
     """
     with tempfile.TemporaryDirectory() as folder:
         if traces is None:
