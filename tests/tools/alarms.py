@@ -48,6 +48,7 @@ from verification.evidence.alarm_record import (
     Ratios,
     read_record,
     write_record,
+    wrong_first,
 )
 from verification.evidence.judged_source import source_hash
 from verification.judging.verdict import Outcome, compare
@@ -142,7 +143,7 @@ def _case(drawn: Draw, output: Path) -> Case:
 def _print(found: Campaign, page: Path, stored: Path | None) -> None:
     if found.alarms:
         table = named_table("problem", "quantity", "line", "between", "verdict")
-        for alarm in found.alarms[:MOST_SHOWN]:
+        for alarm in wrong_first(found.alarms)[:MOST_SHOWN]:
             verdict = f"[{STYLE[alarm.outcome]}]{alarm.outcome}[/] {escape(one_line(alarm.reason))}"
             table.add_row(alarm.case, alarm.quantity, alarm.line, ", ".join(alarm.between), verdict)
         print_out(table)

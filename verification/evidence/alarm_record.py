@@ -4,6 +4,7 @@ Those that find the uncertainty too large to judge are counted apart. Both metho
 solve each problem.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,11 @@ class Alarm:
     between: tuple[str, ...]
     outcome: Outcome
     reason: str
+
+
+def wrong_first(alarms: Iterable[Alarm]) -> list[Alarm]:
+    """Alarms in their order, those before the rest that do not merely find U above its cap."""
+    return sorted(alarms, key=lambda one: one.outcome is Outcome.INCONCLUSIVE)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import pytest
 from alarms import alarms, counted, with_campaign
 from synthetic_results import INFO, STEEL, contact, crashed, result_of
 
-from verification.evidence.alarm_record import AlarmRecord, read_record
+from verification.evidence.alarm_record import AlarmRecord, read_record, wrong_first
 from verification.judging.verdict import Outcome
 
 E, NU = STEEL
@@ -35,6 +35,9 @@ def test_whatever_is_not_agreement_is_an_alarm():
     assert "good" not in outcomes
     assert (found.wrong, found.vague) == ({"wrong", "dead", "empty"}, {"vague"})
     assert found.comparisons == sum(len(r.verdicts) for r in (good, wrong, vague, dead))
+    merely_vague = [one.outcome is Outcome.INCONCLUSIVE for one in found.alarms]
+    assert merely_vague != sorted(merely_vague)
+    assert [one.outcome is Outcome.INCONCLUSIVE for one in wrong_first(found.alarms)] == sorted(merely_vague)
 
 
 def of_errors(*stated):

@@ -9,7 +9,7 @@ from functools import partial
 
 from verification.cases.drawn_ranges import FRICTION, MOST_COATINGS, POISSON, RATIO, THICKNESS, THINNEST
 from verification.credibility.self_tests.known_verdicts import TEST
-from verification.evidence.alarm_record import DECADES, Campaign
+from verification.evidence.alarm_record import DECADES, Campaign, wrong_first
 from verification.evidence.code_record import shared
 from verification.judging.verdict import Outcome, Verdict
 from verification.page.number_text import plain
@@ -224,8 +224,7 @@ def _alarms(evidence: Evidence) -> list[Part]:
             ("made", lambda one: f"{one.started[:10]}, {(one.commit or 'no commit')[:8]}"),
         ],
     )
-    every = [alarm for one in record.campaigns for alarm in one.alarms]
-    alarms = sorted(every, key=lambda alarm: alarm.outcome is Outcome.INCONCLUSIVE)
+    alarms = wrong_first(alarm for one in record.campaigns for alarm in one.alarms)
     table = table_of(
         f"The first {MOST} of {len(alarms)}." if len(alarms) > MOST else f"All {len(alarms)}.",
         alarms[:MOST],
